@@ -1,0 +1,1 @@
+"""Behavior trees: leaves, ports, the loader, the executor, the trace and the robot protocol."""

@@ -1,0 +1,65 @@
+"""The robot as behaviors see it, and what only a simulated world can do besides.
+
+Both are structural protocols: a simulation or a real robot satisfies them without importing this module.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from skills.footsteps.footstep import Footstep
+from skills.geometry.camera import DepthImage
+from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingStatus
+
+
+class Robot(Protocol):
+    """A biped that walks over footsteps and looks at the ground."""
+
+    @property
+    def time(self) -> float:
+        """Robot time, the only clock of a behavior [s]."""
+        ...
+
+    def state(self) -> RobotState:
+        """The newest estimate of the robot's state."""
+        ...
+
+    def status(self) -> WalkingStatus:
+        """What the walking controller is doing."""
+        ...
+
+    def depth_image(self) -> DepthImage | None:
+        """The newest depth image; None before the first."""
+        ...
+
+    def send_footsteps(self, steps: tuple[Footstep, ...]) -> None:
+        """Replace all queued steps; the step whose swing is under way goes on."""
+        ...
+
+    def pause_walking(self) -> None:
+        """Finish the current step, then stand; queued steps are dropped."""
+        ...
+
+    def drain_events(self) -> tuple[StepEvent, ...]:
+        """Step events since the last call, oldest first."""
+        ...
+
+    def drain_log(self) -> tuple[ControlSample, ...]:
+        """Control-rate samples since the last call, oldest first."""
+        ...
+
+
+class World(Protocol):
+    """What a simulation offers beyond its robot."""
+
+    def advance(self, duration: float) -> None:
+        """Let robot time run on [s]."""
+        ...
+
+    def true_state(self) -> RobotState:
+        """The state without estimation error, for the judge and the recording."""
+        ...
+
+    def box_poses(self) -> dict[str, tuple[tuple[float, ...], tuple[float, ...]]]:
+        """Position (3) [m] and quaternion wxyz (4) of every object of the course by name."""
+        ...

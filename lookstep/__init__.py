@@ -1,0 +1,1 @@
+"""lookstep: a biped walks over rough ground without stopping to think."""

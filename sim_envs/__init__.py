@@ -1,0 +1,1 @@
+"""Simulated worlds: the robot model, courses, sensors, and the judge who knows the truth."""

@@ -1,0 +1,1 @@
+"""The way of the body from start to goal."""

@@ -1,0 +1,1 @@
+"""Footstep planning: where the next feet land."""

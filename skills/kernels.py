@@ -1,0 +1,49 @@
+"""The one way in which lookstep compiles its hot loops.
+
+Every kernel is compiled by numba to machine code that releases the GIL, is bit-reproducible (no `fastmath`, no
+`parallel`) and is cached on disk. Numba's cache does not notice an edited callee in another file, so the cache folder
+is named by a hash of all sources that hold kernels.
+"""
+
+import hashlib
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+_THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
+_KERNEL_FOLDERS = ("skills", "sim_envs")
+
+
+def prepare_runtime() -> None:
+    """Pin one thread a numerical library and choose the kernel cache; must run before numpy and numba load."""
+    for variable in _THREAD_VARIABLES:
+        os.environ.setdefault(variable, "1")
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(_cache_root() / f"kernels-{_source_hash()}"))
+
+
+def _cache_root() -> Path:
+    base = os.environ.get("XDG_CACHE_HOME")
+    return (Path(base) if base else Path.home() / ".cache") / "lookstep"
+
+
+def _source_hash() -> str:
+    digest = hashlib.blake2b(digest_size=8)
+    root = Path(__file__).resolve().parents[1]
+    for folder in _KERNEL_FOLDERS:
+        for source in sorted((root / folder).rglob("*.py")):
+            text = source.read_bytes()
+            if b"@kernel" in text:
+                digest.update(str(source.relative_to(root)).encode())
+                digest.update(text)
+    return digest.hexdigest()
+
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def kernel(function: F) -> F:
+    """Compile a function over scalars and arrays to machine code on first call."""
+    import numba
+
+    return numba.njit(cache=True, nogil=True, fastmath=False, error_model="numpy")(function)  # type: ignore[return-value]

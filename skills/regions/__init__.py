@@ -1,0 +1,1 @@
+"""Planar regions out of depth images."""

@@ -1,0 +1,62 @@
+"""Planar regions: flat pieces of ground with an outline, the map on which footsteps are planned."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from skills.geometry.pose import Array, Pose, readonly
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanarRegion:
+    """A flat piece of ground.
+
+    Attributes:
+        T_world_region: region frame, z along the upward surface normal, origin on the plane.
+        hull_region: simplified concave outline in the region's xy plane, (N, 2) counter-clockwise [m].
+        holes_region: outlines of holes, each (M, 2) clockwise [m].
+        convex_parts_region: convex pieces that cover the region, each (K, 2) counter-clockwise [m].
+        area: area of the outline less its holes [m^2].
+        time: robot time at which the region was last seen [s].
+        sigma: standard deviation of the points about the plane [m].
+    """
+
+    T_world_region: Pose
+    hull_region: Array
+    convex_parts_region: tuple[Array, ...]
+    area: float
+    time: float
+    holes_region: tuple[Array, ...] = ()
+    sigma: float = 0.0
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "hull_region", readonly(self.hull_region, (None, 2)))
+        for name in ("holes_region", "convex_parts_region"):
+            object.__setattr__(self, name, tuple(readonly(part, (None, 2)) for part in getattr(self, name)))
+
+    @property
+    def normal_world(self) -> Array:
+        """Unit upward normal, (3,)."""
+        return self.T_world_region.R[:, 2]
+
+    @property
+    def hull_world(self) -> Array:
+        """Outline in the world, (N, 3) [m]."""
+        return self.T_world_region @ np.column_stack((self.hull_region, np.zeros(len(self.hull_region))))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanarRegions:
+    """The regions of one depth image or of a map.
+
+    Attributes:
+        regions: the regions; where two of a map overlap, the later one in the tuple is the newer.
+        time: robot time of the newest data [s].
+        frame_id: the newest depth image in it.
+    """
+
+    regions: tuple[PlanarRegion, ...]
+    time: float
+    frame_id: int

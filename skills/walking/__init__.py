@@ -1,0 +1,1 @@
+"""Walking over footsteps: balance, swing and joint motion."""

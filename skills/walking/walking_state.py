@@ -1,0 +1,114 @@
+"""What a walking robot tells about itself: its estimated state, what it is doing, and the events of its steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from skills.footsteps.footstep import Footstep, Side, Stance
+from skills.geometry.pose import Array, Pose, readonly
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RobotState:
+    """The estimated state of the robot.
+
+    Attributes:
+        time: robot time [s].
+        T_world_pelvis: pelvis frame.
+        joint_positions: in the order of the robot model, (23,) [rad].
+        joint_velocities: (23,) [rad/s].
+        stance: both sole frames as they are now, also of a foot in the air.
+        com_world, dcm_world: centre of mass and divergent component of motion, (3,) [m].
+    """
+
+    time: float
+    T_world_pelvis: Pose
+    joint_positions: Array
+    joint_velocities: Array
+    stance: Stance
+    com_world: Array
+    dcm_world: Array
+
+    def __post_init__(self) -> None:
+        for name in ("joint_positions", "joint_velocities", "com_world", "dcm_world"):
+            object.__setattr__(self, name, readonly(getattr(self, name), (None,)))
+
+
+class WalkingPhase(Enum):
+    """What the legs are doing."""
+
+    STANDING = "standing"
+    TRANSFER = "transfer"
+    SWING = "swing"
+    FALLEN = "fallen"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WalkingStatus:
+    """What the walking controller is doing.
+
+    Attributes:
+        phase: standing, shifting weight, swinging, or fallen.
+        phase_elapsed, phase_duration: time in the phase, and its nominal duration, 0 when standing [s].
+        current_step: the step whose transfer or swing is under way.
+        queue: the steps after it.
+        imminent_stance: the stance once the current step has landed, as commanded; the stance now when standing.
+        last_side: side of the step under way or last made; None before the first.
+        paused: whether the queue is held.
+        failure: why the robot fell; empty while it walks.
+    """
+
+    phase: WalkingPhase
+    phase_elapsed: float
+    phase_duration: float
+    current_step: Footstep | None
+    queue: tuple[Footstep, ...]
+    imminent_stance: Stance
+    last_side: Side | None
+    paused: bool
+    failure: str = ""
+
+
+class StepEventKind(Enum):
+    """What happened to a step."""
+
+    STARTED = "started"
+    COMPLETED = "completed"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StepEvent:
+    """A step began its swing, or its foot has landed.
+
+    Attributes:
+        kind: started or completed.
+        time: robot time [s].
+        step: the step as commanded.
+        T_world_sole: the sole as it was at the event.
+    """
+
+    kind: StepEventKind
+    time: float
+    step: Footstep
+    T_world_sole: Pose
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ControlSample:
+    """One line of the control-rate log.
+
+    Attributes:
+        time: robot time [s].
+        phase: walking phase.
+        com_world, dcm_world, dcm_reference_world, cop_world: (3,) [m].
+        dcm_error: distance of the DCM from its reference in the plane [m].
+    """
+
+    time: float
+    phase: WalkingPhase
+    com_world: Array
+    dcm_world: Array
+    dcm_reference_world: Array
+    cop_world: Array
+    dcm_error: float
