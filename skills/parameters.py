@@ -40,7 +40,7 @@ def parameter(
     return dataclasses.field(default=default, metadata=metadata)
 
 
-@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(parameter,))
+@dataclass_transform(frozen_default=True, kw_only_default=True)
 def parameters(cls: type[T]) -> type[T]:
     """Make a class of `parameter` fields into a frozen dataclass that refuses values out of range.
 
