@@ -1,0 +1,59 @@
+"""The robot as a table: which MJCF file describes its body, how large its soles are, where its depth camera sits.
+
+The figures of the body itself (masses, limits, efforts) live in the MJCF file alone, which MuJoCo and pinocchio both
+read.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from skills.geometry.pose import Pose, rotation_y
+from skills.parameters import parameter, parameters
+
+_FOLDER = Path(__file__).parent
+# Columns: camera axes (x right, y down, z forward) of a level camera in its body (x forward, y left, z up).
+_R_body_level_camera = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+
+
+@parameters
+class RobotDescription:
+    """What the simulation must know of a biped beside its MJCF file."""
+
+    mjcf: str = parameter(
+        "atlas_class.xml",
+        unit="1",
+        meaning="MJCF file without a free joint: a name among the shipped robots, or an absolute path",
+    )
+    sole_length: float = parameter(0.26, unit="m", meaning="sole along x", minimum=0.05, maximum=0.5)
+    sole_width: float = parameter(0.138, unit="m", meaning="sole along y", minimum=0.03, maximum=0.3)
+    nominal_pelvis_height: float = parameter(
+        0.864, unit="m", meaning="pelvis above the soles when standing to walk", minimum=0.2, maximum=2.0
+    )
+    nominal_com_height: float = parameter(
+        1.12, unit="m", meaning="centre of mass above the soles when standing to walk", minimum=0.2, maximum=2.0
+    )
+    camera_body: str = parameter("torso", unit="1", meaning="body that carries the depth camera")
+    camera_position: tuple[float, float, float] = parameter(
+        (0.14, 0.0, 0.03), unit="m", meaning="optical centre in that body's frame", minimum=-2.0, maximum=2.0
+    )
+    camera_pitch_deg: float = parameter(
+        47.0, unit="deg", meaning="how far the camera looks below the horizon", minimum=0.0, maximum=90.0
+    )
+
+    @property
+    def mjcf_path(self) -> Path:
+        """Where the MJCF file is; both MuJoCo and pinocchio load it by name."""
+        return _FOLDER / self.mjcf
+
+    @property
+    def T_body_camera(self) -> Pose:
+        """Depth camera (x right, y down, z forward) in the body that carries it."""
+        pitch = np.deg2rad(self.camera_pitch_deg)
+        return Pose(rotation_y(pitch) @ _R_body_level_camera, np.array(self.camera_position))
+
+    @property
+    def sole_corners_sole(self) -> np.ndarray:
+        """Corners of the sole in its own plane, (4, 2) counter-clockwise from the front left [m]."""
+        signs = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+        return 0.5 * signs * (self.sole_length, self.sole_width)
