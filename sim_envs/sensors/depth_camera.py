@@ -1,0 +1,111 @@
+"""A depth camera like the Intel RealSense L515, mounted on the pelvis and looking down at the ground ahead.
+
+It takes snapshots of geom poses rather than a simulation, so that a frame can be rendered later than it was taken, in
+another thread, or never.
+"""
+
+# mujoco keeps its types in binary modules without stubs.
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from sim_envs.sensors.depth_noise import DepthNoise, DepthNoiseModel
+from sim_envs.sensors.geom_mesh import geom_mesh
+from sim_envs.sensors.rasterizer import rasterize_depth
+from skills.geometry.camera import DepthImage, PinholeCamera
+from skills.geometry.pose import Array, Pose
+from skills.parameters import parameter, parameters
+
+
+@parameters
+class DepthCameraParameters:
+    """Optics, rate and mount of the depth camera."""
+
+    width: int = parameter(1024, unit="px", minimum=16, maximum=4096, meaning="columns of an image")
+    height: int = parameter(768, unit="px", minimum=16, maximum=4096, meaning="rows of an image")
+    horizontal_fov: float = parameter(
+        1.2217304763960306, unit="rad", minimum=0.1, maximum=2.6, meaning="angle of view from left to right (70 deg)"
+    )
+    vertical_fov: float = parameter(
+        0.9599310885968813, unit="rad", minimum=0.1, maximum=2.6, meaning="angle of view from top to bottom (55 deg)"
+    )
+    near: float = parameter(0.1, unit="m", minimum=0.01, maximum=1.0, meaning="nearer depths return nothing")
+    far: float = parameter(9.0, unit="m", minimum=1.0, maximum=100.0, meaning="farther depths return nothing")
+    rate: float = parameter(30.0, unit="Hz", minimum=0.1, maximum=200.0, meaning="images a second of robot time")
+    resolution: float = parameter(
+        1.0, unit="1", minimum=0.05, maximum=1.0, meaning="share of the columns and rows that are rendered"
+    )
+    mount_xyz: tuple[float, float, float] = parameter(
+        (0.15, 0.0, 0.17), unit="m", minimum=-2.0, maximum=2.0, meaning="lens in the pelvis frame: forward, left, up"
+    )
+    mount_pitch: float = parameter(
+        0.8203047484373349, unit="rad", minimum=-1.6, maximum=1.6, meaning="how far it looks below the horizon (47 deg)"
+    )
+
+    @property
+    def camera(self) -> PinholeCamera:
+        """Intrinsics of the images."""
+        fx = 0.5 * self.width / np.tan(0.5 * self.horizontal_fov)
+        fy = 0.5 * self.height / np.tan(0.5 * self.vertical_fov)
+        cx, cy = 0.5 * (self.width - 1), 0.5 * (self.height - 1)
+        full = PinholeCamera(self.width, self.height, float(fx), float(fy), cx, cy, self.near, self.far)
+        return full.scaled(self.resolution)
+
+    @property
+    def T_pelvis_camera(self) -> Pose:
+        """The mount."""
+        return looking(self.mount_xyz, pitch=self.mount_pitch)
+
+
+def looking(xyz: tuple[float, float, float] | Array, *, pitch: float, yaw: float = 0.0) -> Pose:
+    """A camera frame (x right, y down, z forward) at xyz that looks along yaw, pitch below the horizon [m, rad]."""
+    forward_left_up = Pose.from_xyz_rpy(xyz, (0.0, pitch, yaw))
+    R_flu_camera = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+    return Pose(forward_left_up.R @ R_flu_camera, forward_left_up.p)
+
+
+class DepthCamera:
+    """Depth images of a MuJoCo model, the robot's own legs included.
+
+    Its methods change nothing, so that several threads may share one camera.
+    """
+
+    def __init__(
+        self, model: mujoco.MjModel, parameters: DepthCameraParameters, noise: DepthNoise, *, seed: int
+    ) -> None:
+        self.parameters = parameters
+        self.camera = parameters.camera
+        self.mesh = geom_mesh(model)
+        self._noise = DepthNoiseModel(noise, self.camera, seed)
+        self._T_mount = Pose(self._noise.R_mount, np.zeros(3))
+
+    def capture(
+        self,
+        geom_positions: Array,
+        geom_rotations: Array,
+        T_world_camera: Pose,
+        time: float,
+        frame_id: int,
+        T_world_camera_estimate: Pose | None = None,
+    ) -> DepthImage:
+        """What the sensor delivers: noisy depth, and the camera pose that the robot believes in.
+
+        Args:
+            geom_positions: snapshot of `MjData.geom_xpos`, (ngeom, 3) [m].
+            geom_rotations: snapshot of `MjData.geom_xmat`, (ngeom, 3, 3).
+            T_world_camera: true pose of the mount.
+            time: robot time [s].
+            frame_id: counts frames from 0; with the seed it determines the noise.
+            T_world_camera_estimate: the robot's estimate of that pose, where it differs from the truth.
+        """
+        clean = self.render(geom_positions, geom_rotations, T_world_camera @ self._T_mount)
+        depth = self._noise.corrupt(clean, frame_id)
+        return DepthImage(depth, self.camera, T_world_camera_estimate or T_world_camera, time, frame_id)
+
+    def render(self, geom_positions: Array, geom_rotations: Array, T_world_camera: Pose) -> NDArray[np.float32]:
+        """True depth, (height, width) float32 [m]; 0 where nothing is within range."""
+        return rasterize_depth(self.mesh, geom_positions, geom_rotations, self.camera, T_world_camera)
