@@ -65,7 +65,7 @@ class Footstep:
     """A foothold for one foot and the way there.
 
     Attributes:
-        sequence_id: unique over a run and increasing along a plan.
+        sequence_id: place of the step in the walk; a newer plan's step takes the place of the queued one with its id.
         side: which foot lands here.
         T_world_sole: sole frame, x forward, z along the surface normal.
         foothold_sole: usable part of the sole, (N, 2) convex polygon, counter-clockwise [m].

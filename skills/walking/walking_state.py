@@ -57,6 +57,7 @@ class WalkingStatus:
         last_side: side of the step under way or last made; None before the first.
         paused: whether the queue is held.
         failure: why the robot fell; empty while it walks.
+        last_sequence_id: of the step under way or last made; -1 before the first.
     """
 
     phase: WalkingPhase
@@ -68,6 +69,7 @@ class WalkingStatus:
     last_side: Side | None
     paused: bool
     failure: str = ""
+    last_sequence_id: int = -1
 
 
 class StepEventKind(Enum):

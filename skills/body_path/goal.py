@@ -1,0 +1,32 @@
+"""Where the robot is sent."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from skills.geometry.pose import Array
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """A place and heading for the mid-feet.
+
+    Attributes:
+        x, y: position in the world [m].
+        yaw: heading in the world [rad].
+    """
+
+    x: float
+    y: float
+    yaw: float
+
+    def __post_init__(self) -> None:
+        if not np.isfinite([self.x, self.y, self.yaw]).all():
+            raise ValueError(f"got goal ({self.x}, {self.y}, {self.yaw}), needs finite numbers")
+
+    @property
+    def xyyaw_world(self) -> Array:
+        """(3,): x, y [m], yaw [rad]."""
+        return np.array((self.x, self.y, self.yaw))
