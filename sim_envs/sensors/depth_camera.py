@@ -1,4 +1,4 @@
-"""A depth camera like the Intel RealSense L515, mounted on the pelvis and looking down at the ground ahead.
+"""A depth camera like the Intel RealSense L515.
 
 It takes snapshots of geom poses rather than a simulation, so that a frame can be rendered later than it was taken, in
 another thread, or never.
@@ -23,15 +23,15 @@ from skills.parameters import parameter, parameters
 
 @parameters
 class DepthCameraParameters:
-    """Optics, rate and mount of the depth camera."""
+    """Optics and rate of the depth camera; where it sits is a matter of the robot."""
 
     width: int = parameter(1024, unit="px", minimum=16, maximum=4096, meaning="columns of an image")
     height: int = parameter(768, unit="px", minimum=16, maximum=4096, meaning="rows of an image")
-    horizontal_fov: float = parameter(
-        1.2217304763960306, unit="rad", minimum=0.1, maximum=2.6, meaning="angle of view from left to right (70 deg)"
+    horizontal_fov_deg: float = parameter(
+        70.0, unit="deg", minimum=5.0, maximum=150.0, meaning="angle of view from left to right"
     )
-    vertical_fov: float = parameter(
-        0.9599310885968813, unit="rad", minimum=0.1, maximum=2.6, meaning="angle of view from top to bottom (55 deg)"
+    vertical_fov_deg: float = parameter(
+        55.0, unit="deg", minimum=5.0, maximum=150.0, meaning="angle of view from top to bottom"
     )
     near: float = parameter(0.1, unit="m", minimum=0.01, maximum=1.0, meaning="nearer depths return nothing")
     far: float = parameter(9.0, unit="m", minimum=1.0, maximum=100.0, meaning="farther depths return nothing")
@@ -39,26 +39,15 @@ class DepthCameraParameters:
     resolution: float = parameter(
         1.0, unit="1", minimum=0.05, maximum=1.0, meaning="share of the columns and rows that are rendered"
     )
-    mount_xyz: tuple[float, float, float] = parameter(
-        (0.15, 0.0, 0.17), unit="m", minimum=-2.0, maximum=2.0, meaning="lens in the pelvis frame: forward, left, up"
-    )
-    mount_pitch: float = parameter(
-        0.8203047484373349, unit="rad", minimum=-1.6, maximum=1.6, meaning="how far it looks below the horizon (47 deg)"
-    )
 
     @property
     def camera(self) -> PinholeCamera:
         """Intrinsics of the images."""
-        fx = 0.5 * self.width / np.tan(0.5 * self.horizontal_fov)
-        fy = 0.5 * self.height / np.tan(0.5 * self.vertical_fov)
+        fx = 0.5 * self.width / np.tan(0.5 * np.deg2rad(self.horizontal_fov_deg))
+        fy = 0.5 * self.height / np.tan(0.5 * np.deg2rad(self.vertical_fov_deg))
         cx, cy = 0.5 * (self.width - 1), 0.5 * (self.height - 1)
         full = PinholeCamera(self.width, self.height, float(fx), float(fy), cx, cy, self.near, self.far)
         return full.scaled(self.resolution)
-
-    @property
-    def T_pelvis_camera(self) -> Pose:
-        """The mount."""
-        return looking(self.mount_xyz, pitch=self.mount_pitch)
 
 
 def looking(xyz: tuple[float, float, float] | Array, *, pitch: float, yaw: float = 0.0) -> Pose:

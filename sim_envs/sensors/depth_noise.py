@@ -49,19 +49,15 @@ class DepthNoise:
     depth_bias: float = parameter(
         0.0, unit="1", minimum=-0.2, maximum=0.2, meaning="error of the depth scale: 0.01 measures 1 % too far"
     )
-    mount_error: float = parameter(
-        0.0,
-        unit="rad",
-        minimum=0.0,
-        maximum=0.5,
-        meaning="angle between the true camera and where it is believed to be",
+    mount_error_deg: float = parameter(
+        0.0, unit="deg", minimum=0.0, maximum=20.0, meaning="angle between the true camera and the believed one"
     )
 
 
 DEPTH_NOISE_PRESETS: dict[str, DepthNoise] = {
     "none": DepthNoise(white=0.0, white_per_metre=0.0, correlated=0.0, edge_loss=0.0),
     "standard": DepthNoise(),
-    "hard": DepthNoise(correlated=0.004, depth_bias=0.01, mount_error=np.radians(2.0).item()),
+    "hard": DepthNoise(correlated=0.004, depth_bias=0.01, mount_error_deg=2.0),
 }
 
 
@@ -81,7 +77,7 @@ class DepthNoiseModel:
     def R_mount(self) -> NDArray[np.float64]:
         """Rotation from the true camera to the believed one, R_believed_true (3, 3), about an axis drawn once."""
         axis = np.random.default_rng((self._seed, _MOUNT_STREAM)).standard_normal(3)
-        half = 0.5 * self.noise.mount_error
+        half = 0.5 * np.deg2rad(self.noise.mount_error_deg)
         vector = np.sin(half) * axis / np.linalg.norm(axis)
         return Pose.from_quaternion_wxyz((np.cos(half), *vector), np.zeros(3)).R
 

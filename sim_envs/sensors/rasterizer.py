@@ -242,7 +242,8 @@ def _cut_at_lens(face: NDArray[Any], first: int, p: NDArray[Any], corners: NDArr
     for k in range(size):
         i, j = face[k] - first, face[k + 1 if k + 1 < size else 0] - first
         if p[i, 2] >= _LENS:
-            corners[n] = p[i]
+            for m in range(3):
+                corners[n, m] = p[i, m]
             n += 1
         if (p[i, 2] >= _LENS) != (p[j, 2] >= _LENS):
             # Always from the corner in front to the one behind: both faces at this edge find the same point.
