@@ -1,5 +1,6 @@
 """The wheel as a user has it: built, installed with the locked dependencies, used away from the checkout."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -57,6 +58,14 @@ for folder in ("trees", "config"):
     assert shipped_folder(folder).is_relative_to({str(installed.parent)!r}) and shipped_folder(folder).is_dir()
 """
     call(installed / "python", "-c", program, cwd=tmp_path)
+
+
+def test_installed_command_line_checks_a_shipped_tree_and_walks(installed, tmp_path):
+    lookstep = installed / "lookstep"
+    assert "demo" in call(lookstep, "--help", cwd=tmp_path)
+    call(lookstep, "check", "look_and_step", cwd=tmp_path)
+    call(lookstep, "run", "--course", "flat", "--goal", "0.6,0,0", "--json", "summary.json", cwd=tmp_path)
+    assert json.loads((tmp_path / "summary.json").read_text())["outcome"] == "goal_reached"
 
 
 def uv(*arguments):
