@@ -1,0 +1,204 @@
+"""Computes for leaves that take longer than a tick, in one of two modes with the same contract.
+
+`lockstep` delivers a result when robot time has advanced by the job's budget: at that moment it waits for the worker
+if it must, so the same seed gives the same trace at any simulation speed. `realtime` delivers what is ready. In both,
+results arrive only in `deliver`, which the tree calls at the start of a tick, in the order of due time and then of
+submission; a cancelled job's result arrives never. Wall time is measured for the record and decides nothing in
+lockstep: a deadline miss is a compute time over budget.
+"""
+
+from __future__ import annotations
+
+import time as wall
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+# Robot times are multiples of the control period up to rounding; a job due at a tick must not slip to the next.
+_TIME_TOLERANCE = 1e-9
+
+
+class ExecutorMode(Enum):
+    """When results are delivered."""
+
+    LOCKSTEP = "lockstep"
+    REALTIME = "realtime"
+
+
+class JobOutcome(Enum):
+    """How a job ended."""
+
+    DELIVERED = "delivered"
+    RAISED = "raised"
+    CANCELLED = "cancelled"
+
+
+@dataclass(frozen=True, slots=True)
+class JobRecord:
+    """The account of one job.
+
+    Attributes:
+        job_id: counts submissions from 0.
+        path: the node that submitted it.
+        submitted, due, ended: robot times of submission, of the end of the budget, and of delivery or cancelling [s].
+        budget: robot time that the result may take [s].
+        deadline: robot time at which the result is needed; None where there is no such time [s].
+        compute_seconds: wall time of the computation; None for a job cancelled before it ended [s].
+        cpu_seconds: processor time of its thread alone; None likewise [s].
+        outcome: delivered, raised or cancelled.
+    """
+
+    job_id: int
+    path: str
+    submitted: float
+    due: float
+    ended: float
+    budget: float
+    deadline: float | None
+    compute_seconds: float | None
+    cpu_seconds: float | None
+    outcome: JobOutcome
+
+    @property
+    def margin(self) -> float | None:
+        """Budget less compute time [s]."""
+        return None if self.compute_seconds is None else self.budget - self.compute_seconds
+
+    @property
+    def missed(self) -> bool:
+        """Whether the computation took longer than its budget."""
+        return self.compute_seconds is not None and self.compute_seconds > self.budget
+
+    @property
+    def deadline_margin(self) -> float | None:
+        """Robot time between delivery and deadline; negative where it came too late [s]."""
+        return None if self.deadline is None else self.deadline - self.ended
+
+
+class Job:
+    """A computation under way.
+
+    Attributes:
+        done: whether it was delivered, with a result or an error.
+    """
+
+    __slots__ = ("budget", "deadline", "done", "due", "error", "future", "job_id", "path", "result", "submitted")
+
+    def __init__(self, job_id: int, path: str, submitted: float, budget: float, deadline: float | None) -> None:
+        self.job_id = job_id
+        self.path = path
+        self.submitted = submitted
+        self.budget = budget
+        self.deadline = deadline
+        self.due = submitted + budget
+        self.future: Future[_Computed]
+        self.done = False
+        self.result: Any = None
+        self.error: Exception | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class _Computed:
+    result: Any
+    error: Exception | None
+    compute_seconds: float
+    cpu_seconds: float
+
+
+class Executor:
+    """A few worker threads for one tree."""
+
+    def __init__(self, mode: ExecutorMode = ExecutorMode.LOCKSTEP, *, workers: int = 2) -> None:
+        self.mode = mode
+        self._pool = ThreadPoolExecutor(workers, thread_name_prefix="skill")
+        self._pending: list[Job] = []
+        self._submissions = 0
+        self._records: list[JobRecord] = []
+
+    def submit(
+        self,
+        function: Callable[..., Any],
+        arguments: tuple[Any, ...],
+        *,
+        path: str,
+        time: float,
+        budget: float,
+        deadline: float | None = None,
+    ) -> Job:
+        """Begin a computation of a pure function of immutable arguments.
+
+        Args:
+            function: what to compute.
+            arguments: its positional arguments.
+            path: the node that asks.
+            time: robot time now [s].
+            budget: robot time after which a lockstep result is delivered [s].
+            deadline: robot time at which the result is needed, for the record [s].
+        """
+        job = Job(self._submissions, path, time, budget, deadline)
+        self._submissions += 1
+        job.future = self._pool.submit(_compute, function, arguments)
+        self._pending.append(job)
+        self._pending.sort(key=lambda pending: (pending.due, pending.job_id))
+        return job
+
+    def deliver(self, time: float) -> None:
+        """Hand over the results that are due at this robot time."""
+        for job in tuple(self._pending):
+            if self._is_due(job, time):
+                self._pending.remove(job)
+                computed = job.future.result()
+                job.result, job.error, job.done = computed.result, computed.error, True
+                self._record(job, time, JobOutcome.DELIVERED if job.error is None else JobOutcome.RAISED)
+
+    def cancel(self, job: Job, time: float) -> None:
+        """Drop a job: its result never arrives. A job that is delivered stays so."""
+        if job in self._pending:
+            self._pending.remove(job)
+            job.future.cancel()
+            self._record(job, time, JobOutcome.CANCELLED)
+
+    def drain_records(self) -> tuple[JobRecord, ...]:
+        """The jobs that ended since the last call, in the order in which they ended."""
+        records, self._records = tuple(self._records), []
+        return records
+
+    def shutdown(self) -> None:
+        """Drop what is under way and end the workers."""
+        self._pending.clear()
+        self._pool.shutdown(wait=True, cancel_futures=True)
+
+    def _is_due(self, job: Job, time: float) -> bool:
+        if self.mode is ExecutorMode.REALTIME:
+            return job.future.done()
+        return job.due <= time + _TIME_TOLERANCE
+
+    def _record(self, job: Job, time: float, outcome: JobOutcome) -> None:
+        finished = job.future.done() and not job.future.cancelled()
+        computed = job.future.result() if finished and outcome is not JobOutcome.CANCELLED else None
+        self._records.append(
+            JobRecord(
+                job_id=job.job_id,
+                path=job.path,
+                submitted=job.submitted,
+                due=job.due,
+                ended=time,
+                budget=job.budget,
+                deadline=job.deadline,
+                compute_seconds=computed and computed.compute_seconds,
+                cpu_seconds=computed and computed.cpu_seconds,
+                outcome=outcome,
+            )
+        )
+
+
+def _compute(function: Callable[..., Any], arguments: tuple[Any, ...]) -> _Computed:
+    started, cpu_started = wall.perf_counter(), wall.thread_time()
+    result, error = None, None
+    try:
+        result = function(*arguments)
+    except Exception as raised:
+        error = raised
+    return _Computed(result, error, wall.perf_counter() - started, wall.thread_time() - cpu_started)

@@ -1,0 +1,298 @@
+"""A tree that runs: ticked at a fixed rate of the robot's clock, stopped safely by the first fault, and traced.
+
+```python
+spec = load_tree("trees/look_and_step.yaml")
+tree = Tree(spec, robot)
+while tree.outcome is Outcome.RUNNING:
+    world.advance(tree.next_tick_time - robot.time)
+    tree.tick()
+tree.shutdown()
+```
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+from py_trees.common import Status
+
+from behaviors.blackboard import Blackboard
+from behaviors.builder import Layers, SettingError, Settings, build_node, replaced
+from behaviors.context import Context, Fault, LogLine, NodeFaultError, OperatorEvent
+from behaviors.executor import Executor, JobRecord
+from behaviors.leaf import LeafNode
+from behaviors.node import Node
+from behaviors.robot import Robot
+from behaviors.robot_view import RobotView
+from behaviors.spec import TreeSpec
+from behaviors.trace import ParameterChange, Trace
+from strict_yaml import nearest
+
+DEFAULT_RATE = 50.0
+_TIME_TOLERANCE = 1e-9
+
+
+class Outcome(Enum):
+    """How a run stands, or how it ended."""
+
+    RUNNING = "running"
+    SUCCESS = "success"
+    FAILURE = "failure"
+    ERROR = "error"
+
+
+@dataclass(frozen=True, slots=True)
+class Transition:
+    """A node whose status changed in a tick.
+
+    Attributes:
+        path: the node.
+        before, after: its status.
+        reason: what the node says about it; may be empty.
+    """
+
+    path: str
+    before: Status
+    after: Status
+    reason: str
+
+
+class ClockError(RuntimeError):
+    """The robot's clock ran backwards."""
+
+
+class Tree:
+    """A tree joined to a robot.
+
+    Attributes:
+        spec: the tree as its file describes it.
+        context: what its leaves share.
+        blackboard: values by key.
+        root, safe_stop: the nodes; safe stop is None where the file has none.
+        nodes: all nodes, parents before children, the safe stop's last.
+        outcome: how the run stands.
+        reason: why it ended; empty while it runs.
+        trace: hash and file of the run.
+        transitions: statuses that the last tick changed, in the order of `nodes`.
+        lateness: robot time by which the last tick came after its due time [s].
+    """
+
+    def __init__(
+        self,
+        spec: TreeSpec,
+        robot: Robot,
+        *,
+        rate: float = DEFAULT_RATE,
+        executor: Executor | None = None,
+        parameters: dict[str, Any] | None = None,
+        defaults: Settings | None = None,
+        settings: Settings | None = None,
+        trace: Trace | None = None,
+    ) -> None:
+        """Build the nodes; nothing is ticked yet.
+
+        Args:
+            spec: the tree.
+            robot: whom it moves.
+            rate: ticks per second of robot time [1/s].
+            executor: computes for the leaves; one in lockstep where None.
+            parameters: of the skills, by subject.
+            defaults: parameters of nodes by kind, below those that the file gives.
+            settings: parameters of nodes by path, above those that the file gives.
+            trace: takes the ticks; one without a file where None.
+
+        Raises:
+            SettingError: where settings name a node or parameter that is not there.
+            ParameterError: where a setting is out of range.
+        """
+        self.spec = spec
+        self.period = 1.0 / rate
+        self.context = Context(RobotView(robot), executor or Executor(), dict(parameters or {}))
+        self.blackboard = Blackboard()
+        for key, declared in spec.keys.items():
+            self.blackboard.slot(key, declared)
+        layers = Layers(defaults or {}, settings or {})
+        layers.check_targets(spec)
+        self.root = build_node(spec.root, self.context, self.blackboard, spec, layers)
+        stop = spec.safe_stop
+        self.safe_stop = None if stop is None else build_node(stop, self.context, self.blackboard, spec, layers)
+        self.nodes: tuple[Node, ...] = self.root.nodes + (() if self.safe_stop is None else self.safe_stop.nodes)
+        self.outcome = Outcome.RUNNING
+        self.reason = ""
+        self.trace = trace or Trace()
+        self.transitions: tuple[Transition, ...] = ()
+        self.lateness = 0.0
+        self._slots = self.blackboard.slots
+        self._nodes_by_path = {node.path: node for node in self.nodes}
+        self._statuses = [node.status for node in self.nodes]
+        self._pending_inputs: list[tuple[str, Any]] = []
+        self._pending_events: list[OperatorEvent] = []
+        self._changes: list[ParameterChange] = []
+        self._ticks = 0
+        self._first_tick_time: float | None = None
+        self._due_index = 0
+        self._is_set_up = False
+
+    @property
+    def next_tick_time(self) -> float:
+        """Robot time at which the next tick is due [s]."""
+        if self._first_tick_time is None:
+            return self.context.robot.time
+        return self._first_tick_time + self._due_index * self.period
+
+    @property
+    def faults(self) -> tuple[Fault, ...]:
+        """All exceptions so far."""
+        return tuple(self.context.faults)
+
+    def node(self, path: str) -> Node:
+        """The node of a path.
+
+        Raises:
+            KeyError: where there is none.
+        """
+        if path not in self._nodes_by_path:
+            raise KeyError(f'no node "{path}"{nearest(path, self._nodes_by_path)}')
+        return self._nodes_by_path[path]
+
+    def set_input(self, key: str, value: Any) -> None:
+        """Put a value that comes from outside on the blackboard at the next tick; None takes it away.
+
+        Raises:
+            KeyError: where the tree has no such input.
+        """
+        if key not in self.spec.inputs:
+            raise KeyError(f'tree "{self.spec.name}" has no input "{key}"{nearest(key, self.spec.inputs)}')
+        self._pending_inputs.append((key, value))
+        self._pending_events.append(OperatorEvent(key, value))
+
+    def send(self, event: OperatorEvent) -> None:
+        """Show an operator's event to the leaves at the next tick."""
+        self._pending_events.append(event)
+
+    def set_parameter(self, target: str, key: str, value: Any) -> None:
+        """Change one parameter between two ticks.
+
+        Args:
+            target: a node's path, or a subject of the skills' parameters.
+            key: the parameter.
+            value: what it shall be.
+
+        Raises:
+            SettingError: where target or key are unknown.
+            ParameterError: where the value is out of range.
+        """
+        subjects = self.context.parameters
+        if target in subjects:
+            subjects[target] = replaced(subjects[target], {key: value}, target)
+        elif target in self._nodes_by_path:
+            node = self._nodes_by_path[target]
+            node.set_parameters(replaced(node.parameters, {key: value}, target))
+        else:
+            raise SettingError(f'no node or subject "{target}"{nearest(target, (*subjects, *self._nodes_by_path))}')
+        self._changes.append(ParameterChange(target, key, value))
+
+    def setup(self) -> None:
+        """Call the setup hook of every leaf, once; the first tick does it where nobody did before."""
+        if self._is_set_up:
+            return
+        self._is_set_up = True
+        for node in self.nodes:
+            if isinstance(node, LeafNode):
+                node.run_setup()
+
+    def tick(self) -> None:
+        """Tick the tree now; after a fault the safe stop, and after the end nothing but the trace."""
+        faults = len(self.context.faults)
+        try:
+            self._begin_tick()
+            self.setup()
+            if self.outcome is Outcome.RUNNING and len(self.context.faults) == faults:
+                self.root.tick_once()
+            elif self.outcome is Outcome.ERROR:
+                self._tick_safe_stop()
+        except NodeFaultError:
+            pass
+        except Exception as error:
+            self.context.record_fault(f"/{self.spec.name}", "tick", error)
+        if self.outcome is Outcome.RUNNING:
+            self._conclude()
+        self._end_tick()
+
+    def drain_jobs(self) -> tuple[JobRecord, ...]:
+        """Accounts of the computations that ended since the last call."""
+        return self.context.executor.drain_records()
+
+    def drain_log(self) -> tuple[LogLine, ...]:
+        """Lines of the log since the last call."""
+        lines, self.context.log_lines = tuple(self.context.log_lines), []
+        return lines
+
+    def shutdown(self) -> None:
+        """Stop what runs, once, and end the workers and the trace's file."""
+        self.root.stop(Status.INVALID)
+        if self.safe_stop is not None:
+            self.safe_stop.stop(Status.INVALID)
+        self.context.executor.shutdown()
+        self.trace.close()
+
+    def _begin_tick(self) -> None:
+        context = self.context
+        context.tick = self._ticks
+        self._ticks += 1
+        context.operator_events, self._pending_events = tuple(self._pending_events), []
+        context.robot.begin_tick()
+        self._take_time(context.robot.time)
+        inputs, self._pending_inputs = self._pending_inputs, []
+        for key, value in inputs:
+            self.blackboard.slot(key, None).write(value)
+        context.executor.deliver(context.time)
+
+    def _take_time(self, time: float) -> None:
+        if self._first_tick_time is None:
+            self._first_tick_time = time
+        before, self.context.time = self.context.time, time
+        self.lateness = time - self.next_tick_time
+        # Ticks that were missed are not made up for: the robot is where it is now.
+        elapsed = (time - self._first_tick_time) / self.period
+        self._due_index = math.floor(elapsed + _TIME_TOLERANCE / self.period) + 1
+        if time < before:
+            raise ClockError(f"robot time went back from {before:.6f} s to {time:.6f} s")
+
+    def _conclude(self) -> None:
+        """End the run where the root is done, or where anything raised in this tick."""
+        if self.context.faults:
+            self.outcome = Outcome.ERROR
+            self.reason = str(self.context.faults[0])
+            self.root.stop(Status.INVALID)
+            self._tick_safe_stop()
+        elif self.root.status is not Status.RUNNING:
+            self.outcome = Outcome.SUCCESS if self.root.status is Status.SUCCESS else Outcome.FAILURE
+            self.reason = self.root.reason
+
+    def _tick_safe_stop(self) -> None:
+        """Tick the safe stop until it is done; where it raises itself, it is over."""
+        stop = self.safe_stop
+        if stop is None or stop.status in (Status.SUCCESS, Status.FAILURE):
+            return
+        try:
+            stop.tick_once()
+        except NodeFaultError:
+            stop.stop(Status.FAILURE)
+
+    def _end_tick(self) -> None:
+        transitions = []
+        for index, node in enumerate(self.nodes):
+            before = self._statuses[index]
+            if node.status is not before:
+                transitions.append(Transition(node.path, before, node.status, node.reason))
+                self._statuses[index] = node.status
+        self.transitions = tuple(transitions)
+        changes, self._changes = tuple(self._changes), []
+        context = self.context
+        self.trace.record(
+            context.tick, context.time, self.nodes, self._slots, context.robot, context.operator_events, changes
+        )
