@@ -91,15 +91,18 @@ def _opacity(model: mujoco.MjModel, geom: int) -> float:
     return float(geom_rgba(model, geom)[3])
 
 
+def _kind(model: mujoco.MjModel, geom: int) -> mujoco.mjtGeom:
+    return mujoco.mjtGeom(int(model.geom_type[geom]))
+
+
 def _is_surface(model: mujoco.MjModel, geom: int) -> bool:
     """Planes and height fields are seen from above only, in MuJoCo too."""
-    return model.geom_type[geom] in (mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_HFIELD)
+    return _kind(model, geom) in (mujoco.mjtGeom.mjGEOM_PLANE, mujoco.mjtGeom.mjGEOM_HFIELD)
 
 
 def _shape(model: mujoco.MjModel, geom: int, segments: int) -> shapes.Shape:
     size = np.asarray(model.geom_size[geom], dtype=np.float64)
-    kind = mujoco.mjtGeom(int(model.geom_type[geom]))
-    match kind:
+    match _kind(model, geom):
         case mujoco.mjtGeom.mjGEOM_BOX:
             return shapes.box(size)
         case mujoco.mjtGeom.mjGEOM_PLANE:
@@ -116,7 +119,9 @@ def _shape(model: mujoco.MjModel, geom: int, segments: int) -> shapes.Shape:
             return _mesh_shape(model, int(model.geom_dataid[geom]))
         case mujoco.mjtGeom.mjGEOM_HFIELD:
             return _height_field_shape(model, int(model.geom_dataid[geom]))
-    raise ValueError(f'geom "{model.geom(geom).name}" ({geom}): got {kind.name}, which cannot be seen by a camera')
+    raise ValueError(
+        f'geom "{model.geom(geom).name}" ({geom}): got {_kind(model, geom).name}, which cannot be seen by a camera'
+    )
 
 
 def _mesh_shape(model: mujoco.MjModel, mesh: int) -> shapes.Shape:

@@ -50,7 +50,8 @@ def cylinder(radius: float, half_length: float, segments: int) -> Shape:
 
 
 def _revolve(r: Array, z: Array, segments: int) -> Shape:
-    """Turn a profile r(z), listed from bottom to top, about the z axis."""
+    """Turn a profile r(z) from pole to pole, listed from bottom to top, about the z axis."""
+    r[0] = r[-1] = 0.0  # where a cosine is not quite
     angles = 2 * np.pi * np.arange(segments) / segments
     rings = np.empty((len(r), segments, 3))
     rings[..., 0] = np.outer(r, np.cos(angles))

@@ -190,6 +190,17 @@ def test_invisible_and_hidden_groups_are_not_seen():
     assert geom_mesh(model, groups=(3,)).geom_ids.tolist() == [1]
 
 
+def test_back_faces_of_closed_shapes_and_of_planes_are_left_out_but_not_those_of_open_meshes():
+    tent = '<mesh name="tent" inertia="shell" vertex="0 0 0 1 0 0 1 1 0 0 1 0 .5 .5 1" face="0 1 4 1 2 4 2 3 4 3 0 4"/>'
+    model = model_of(
+        '<geom type="plane" size="0 0 1"/><geom type="box" size="1 2 3"/><geom type="sphere" size="1"/>'
+        '<geom type="capsule" size="1 2"/><geom type="cylinder" size="1 2"/><geom type="ellipsoid" size="1 2 3"/>'
+        '<geom type="mesh" mesh="tent"/>',
+        tent,
+    )
+    assert geom_mesh(model).one_sided.tolist() == [True] * 6 + [False]
+
+
 def test_an_empty_scene_is_empty():
     model = mujoco.MjModel.from_xml_string("<mujoco/>")
     _, positions, rotations = posed(model)
