@@ -4,4 +4,12 @@ from sim_envs.courses.course import Box, BoxEvent, Course, CourseError
 from sim_envs.courses.ground import Ground
 from sim_envs.courses.loading import course_names, load_course
 
-__all__ = ["Box", "BoxEvent", "Course", "CourseError", "Ground", "course_names", "load_course"]
+__all__ = [
+    "Box",
+    "BoxEvent",
+    "Course",
+    "CourseError",
+    "Ground",
+    "course_names",
+    "load_course",
+]

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from sim_envs.courses.course import Box, BoxEvent, Course
+from sim_envs.courses.course import Box, BoxEvent, Course, CourseError
 from sim_envs.courses.generators import GENERATORS, generate
 from sim_envs.courses.ground import Ground
 from sim_envs.courses.stock import STOCK
@@ -23,7 +23,6 @@ MAXIMUM_BOXES = 2000
 
 _NAME = re.compile(r"[A-Za-z0-9_-]+")
 _Vector = tuple[float, float, float]
-
 
 _METRES = {"unit": "m", "minimum": -1000.0, "maximum": 1000.0}
 _POSITIVE_METRES = {"unit": "m", "minimum": 0.001, "maximum": 1000.0}
@@ -85,22 +84,24 @@ def read_course(root: Node, name: str, seed: int = 0) -> Course:
     file = read_dataclass(root, _File, problems)
     if file is None:
         raise YamlError(problems)
-    base = None if file.generator is None else _generated(file.generator, seed, problems)
+    base = None if file.generator is None else _generate(file.generator, seed, problems)
     boxes = {} if base is None else {box.name: box for box in base.boxes}
     for index, node in enumerate(file.objects):
         _add_object(node, f"objects[{index}]", boxes, problems)
-    poses = {box.name: box.T_world_box for box in boxes.values()}
-    events = [_read_event(node, f"events[{i}]", poses, problems) for i, node in enumerate(file.events)]
     start = _place(file.start, base and base.start, "start", root, problems)
     goal = _place(file.goal, base and base.goal, "goal", root, problems)
-    if not problems:
-        _check_ground(tuple(boxes.values()), {"start": start, "goal": goal}, root, problems)
+    # Events and places are checked against the boxes only where these are all read.
+    if problems:
+        raise YamlError(problems)
+    poses = {box.name: box.T_world_box for box in boxes.values()}
+    events = [_read_event(node, f"events[{i}]", poses, problems) for i, node in enumerate(file.events)]
+    _check_ground(tuple(boxes.values()), {"start": start, "goal": goal}, root, problems)
     if problems:
         raise YamlError(problems)
     return Course(name, tuple(boxes.values()), start, goal, tuple(event for event in events if event is not None))
 
 
-def _generated(node: Node, seed: int, problems: list[Problem]) -> Course | None:
+def _generate(node: Node, seed: int, problems: list[Problem]) -> Course | None:
     """The course of `generator: {name: rough, <option>: <value>}`."""
     name = node.get("name")
     if node.kind is not Kind.MAPPING or name is None:
@@ -115,7 +116,11 @@ def _generated(node: Node, seed: int, problems: list[Problem]) -> Course | None:
     parameters = read_dataclass(options, GENERATORS[name.value][1], problems, "generator")
     if parameters is None:
         return None
-    return generate(name.value, seed, **{key: getattr(parameters, key) for key in options.keys})
+    try:
+        return generate(name.value, seed, **{key: getattr(parameters, key) for key in options.keys})
+    except CourseError as error:
+        problems.append(Problem(node.location, str(error), "generator"))
+        return None
 
 
 def _add_object(node: Node, path: str, boxes: dict[str, Box], problems: list[Problem]) -> None:
@@ -123,12 +128,13 @@ def _add_object(node: Node, path: str, boxes: dict[str, Box], problems: list[Pro
     thing = read_dataclass(node, _Object, problems, path)
     if thing is None:
         return
-    found = [
-        _one_of(node, path, "type", "size", problems),
-        _one_of(node, path, "position", "top", problems),
-        _at_most_one(node, path, "rpy_deg", "yaw_deg", problems),
+    refusals = [
+        "" if (thing.type is None) != (thing.size is None) else 'needs either "type" or "size"',
+        "" if (thing.position is None) != (thing.top is None) else 'needs either "position" or "top"',
+        "" if thing.rpy_deg is None or thing.yaw_deg is None else 'takes "rpy_deg" or "yaw_deg", not both',
     ]
-    if not all(found):
+    problems += [Problem(node.location, refusal, path) for refusal in refusals if refusal]
+    if any(refusals):
         return
     size = STOCK[thing.type] if thing.type is not None else thing.size
     corner = thing.position if thing.position is not None else thing.top
@@ -168,7 +174,10 @@ def _offsets(repeats: tuple[_Repeat, ...]) -> list[Array]:
 def _read_event(node: Node, path: str, poses: dict[str, Pose], problems: list[Problem]) -> BoxEvent | None:
     """One entry of `events`; `poses` holds where the events before it leave each box."""
     event = read_dataclass(node, _Event, problems, path)
-    if event is None or not _one_of(node, path, "distance", "time", problems):
+    if event is None:
+        return None
+    if (event.distance is None) == (event.time is None):
+        problems.append(Problem(node.location, 'needs either "distance" or "time"', path))
         return None
     if event.box not in poses:
         place = node.get("box")
@@ -203,20 +212,3 @@ def _check_ground(
         if not np.isfinite(ground.ground_height(np.array([[x, y]]))[0]):
             node = root.get(key) or root
             problems.append(Problem(node.location, f"no box lies under the point ({x:g}, {y:g})", key))
-
-
-def _one_of(node: Node, path: str, first: str, second: str, problems: list[Problem]) -> bool:
-    return _count_of(node, path, (first, second), (1,), f'needs either "{first}" or "{second}"', problems)
-
-
-def _at_most_one(node: Node, path: str, first: str, second: str, problems: list[Problem]) -> bool:
-    return _count_of(node, path, (first, second), (0, 1), f'takes "{first}" or "{second}", not both', problems)
-
-
-def _count_of(
-    node: Node, path: str, keys: tuple[str, str], allowed: tuple[int, ...], message: str, problems: list[Problem]
-) -> bool:
-    if sum(key in node.keys for key in keys) in allowed:
-        return True
-    problems.append(Problem(node.location, message, path))
-    return False

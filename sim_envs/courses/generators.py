@@ -102,6 +102,10 @@ def uneven_flat(seed: int, parameters: UnevenFlatParameters) -> Course:
 
 def rough(seed: int, parameters: RoughParameters) -> Course:
     """Blocks on a profile that rises and falls, a share of them tilted about x or y, to either side."""
+    if parameters.tilt_minimum > parameters.tilt_maximum:
+        raise CourseError(
+            f"tilt_minimum: got {parameters.tilt_minimum:g}, above tilt_maximum {parameters.tilt_maximum:g}"
+        )
     generator = np.random.default_rng(seed)
     cells = [(row, column) for row in range(parameters.rows) for column in range(parameters.columns)]
     heights = generator.uniform(-parameters.height_spread, parameters.height_spread, len(cells))
@@ -133,7 +137,7 @@ def generate(name: str, seed: int = 0, **options: Any) -> Course:
     """Make the course of a generator.
 
     Raises:
-        CourseError: where an option is unknown.
+        CourseError: where an option is unknown, or contradicts another.
         ParameterError: where an option's value is not allowed.
     """
     generator, parameter_class, own_options = GENERATORS[name]
@@ -154,6 +158,10 @@ def _field_course(name: str, blocks: Sequence[Box], parameters: FieldParameters)
     start_pad = _box_between("start_pad", "pad", (first - parameters.pad_length, first), across, 0.0, parameters)
     end = first + length
     goal_pad = _box_between("goal_pad", "pad", (end, end + parameters.pad_length), across, 0.0, parameters)
+    if abs(parameters.goal_y) > half_width:
+        raise CourseError(
+            f"goal_y: got {parameters.goal_y:g}, the pad reaches from {-half_width:g} to {half_width:g} m"
+        )
     goal = (end + first, parameters.goal_y, 0.0)
     return Course(name, (start_pad, *blocks, goal_pad), (0.0, 0.0, 0.0), goal)
 
