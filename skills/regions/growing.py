@@ -1,0 +1,178 @@
+"""Regions of patches: grown from the flattest patch outwards, then merged.
+
+A patch joins where it links to a neighbour in the region (normals and offsets both ways) and also agrees with the plane
+of the whole region, which is fitted anew as it grows. The second test is what keeps a chain of small differences from
+joining blocks that touch. Grown regions merge where both fit their common plane.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skills.geometry.pose import Array
+from skills.kernels import kernel
+from skills.regions.parameters import RegionParameters
+from skills.regions.patches import SUMS, Patches, cosine, fit_plane, off_plane
+
+Labels = NDArray[np.int32]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Segmentation:
+    """Which patch belongs to which plane.
+
+    Attributes:
+        labels: index into planes for each patch, (rows, columns) int32; -1 for none.
+        planes: plane of each region, (R, 3) [1/m], as in `Patches`.
+        sigma: spread of each region's pixels about its plane, (R,) [m].
+    """
+
+    labels: Labels
+    planes: Array
+    sigma: Array
+
+
+def grow_regions(patches: Patches, parameters: RegionParameters) -> Segmentation:
+    """Join patches into regions."""
+    rows, columns = patches.sigma.shape
+    labels = np.full((rows, columns), -1, dtype=np.int32)
+    order = np.argsort(patches.sigma, axis=None, kind="stable")
+    order = order[: int(np.count_nonzero(np.isfinite(patches.sigma)))]
+    capacity = len(order) // parameters.patches_min + 1
+    sums, planes = np.zeros((capacity, SUMS)), np.zeros((capacity, 3))
+    link = (np.cos(parameters.link_angle), parameters.link_offset)
+    grow = (np.cos(parameters.grow_angle), parameters.grow_offset)
+    count = _grow(patches.sums, patches.planes, order, *link, *grow, parameters.patches_min, labels, sums, planes)
+    parents = _merge(labels, count, np.cos(parameters.merge_angle), parameters.merge_offset, sums, planes)
+    roots, renumbered = np.unique(parents, return_inverse=True)
+    lookup = np.append(renumbered, -1).astype(np.int32)
+    sigma = np.array([fit_plane(sums[root], planes[root]) for root in roots])
+    return Segmentation(lookup[labels], planes[roots], sigma)
+
+
+@kernel
+def _grow(
+    patch_sums: Array,
+    patch_planes: Array,
+    order: NDArray[np.int64],
+    link_cosine: float,
+    link_offset: float,
+    grow_cosine: float,
+    grow_offset: float,
+    patches_min: int,
+    labels: Labels,
+    sums: Array,
+    planes: Array,
+) -> int:
+    """Label patches region by region; the number of regions."""
+    rows, columns = labels.shape
+    queue = np.empty(rows * columns, np.int64)
+    seen = np.full((rows, columns), -1, np.int32)
+    count = 0
+    for seed in range(order.shape[0]):
+        row, column = order[seed] // columns, order[seed] % columns
+        if labels[row, column] >= 0:
+            continue
+        region, plane = sums[count], planes[count]
+        for k in range(3):
+            plane[k] = patch_planes[row, column, k]
+        region[:] = 0.0
+        head, tail, fitted = 0, 1, 6
+        queue[0] = order[seed]
+        seen[row, column] = seed
+        while head < tail:
+            row, column = queue[head] // columns, queue[head] % columns
+            head += 1
+            for k in range(10):
+                region[k] += patch_sums[row, column, k]
+            if head > 1.25 * fitted:
+                fit_plane(region, plane)
+                fitted = head
+            here = patch_planes[row, column]
+            for side in range(4):
+                i = row + (side == 0) - (side == 1)
+                j = column + (side == 2) - (side == 3)
+                if i < 0 or j < 0 or i >= rows or j >= columns or labels[i, j] >= 0 or seen[i, j] == seed:
+                    continue
+                there = patch_planes[i, j]
+                s = patch_sums[i, j]
+                # A patch without a plane is not a number, and every test of it fails.
+                if (
+                    cosine(here, there) >= link_cosine
+                    and cosine(plane, there) >= grow_cosine
+                    and abs(off_plane(s, plane)) <= grow_offset
+                    and abs(off_plane(s, here)) <= link_offset
+                    and abs(off_plane(patch_sums[row, column], there)) <= link_offset
+                ):
+                    seen[i, j] = seed
+                    queue[tail] = i * columns + j
+                    tail += 1
+        if tail < patches_min:
+            continue
+        # Early members were judged by a plane that was still poor: judge them again by the last one.
+        fit_plane(region, plane)
+        kept = 0
+        region[:] = 0.0
+        for k in range(tail):
+            row, column = queue[k] // columns, queue[k] % columns
+            if abs(off_plane(patch_sums[row, column], plane)) <= grow_offset:
+                labels[row, column] = count
+                kept += 1
+                for m in range(10):
+                    region[m] += patch_sums[row, column, m]
+        if kept < patches_min:
+            for k in range(tail):
+                labels[queue[k] // columns, queue[k] % columns] = -1
+            continue
+        fit_plane(region, plane)
+        count += 1
+    return count
+
+
+@kernel
+def _merge(
+    labels: Labels, count: int, merge_cosine: float, merge_offset: float, sums: Array, planes: Array
+) -> NDArray[np.int32]:
+    """Join regions at most two patches apart until none fits another; which region each one has become."""
+    rows, columns = labels.shape
+    parents = np.arange(count).astype(np.int32)
+    touching = np.zeros((count, count), np.bool_)
+    for row in range(rows):
+        for column in range(columns):
+            p = labels[row, column]
+            if p < 0:
+                continue
+            for step in range(1, 4):
+                if row + step < rows and labels[row + step, column] >= 0:
+                    touching[p, labels[row + step, column]] = True
+                if column + step < columns and labels[row, column + step] >= 0:
+                    touching[p, labels[row, column + step]] = True
+    union, plane = np.empty(10), np.empty(3)
+    merged = True
+    while merged:
+        merged = False
+        for p in range(count):
+            for q in range(count):
+                if p == q or parents[p] != p or parents[q] != q or not (touching[p, q] or touching[q, p]):
+                    continue
+                if cosine(planes[p], planes[q]) < merge_cosine:
+                    continue
+                for k in range(10):
+                    union[k] = sums[p, k] + sums[q, k]
+                fit_plane(union, plane)
+                if min(cosine(plane, planes[p]), cosine(plane, planes[q])) < merge_cosine:
+                    continue
+                if max(abs(off_plane(sums[p], planes[q])), abs(off_plane(sums[q], planes[p]))) > merge_offset:
+                    continue
+                sums[p] = union
+                planes[p] = plane
+                for k in range(count):
+                    if parents[k] == q:
+                        parents[k] = p
+                    touching[p, k] |= touching[q, k]
+                    touching[k, p] |= touching[k, q]
+                merged = True
+    return parents

@@ -1,0 +1,92 @@
+"""The numbers behind region extraction and region memory."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skills.parameters import parameter, parameters
+
+
+@parameters
+class RegionParameters:
+    """How a depth image is cut into planar regions.
+
+    The tolerances on links are tight because blocks of a field touch: a normal test of 18 degrees cannot part a level
+    block from one tilted by 11, and seams chain through cells that straddle them.
+    """
+
+    patch_size: int = parameter(
+        0, unit="px", minimum=0, maximum=64, meaning="edge of a patch; 0 = the even size nearest to patch_angle"
+    )
+    patch_angle: float = parameter(
+        0.011, unit="rad", minimum=0.002, maximum=0.1, meaning="edge of a patch as seen from the camera"
+    )
+    depth_max: float = parameter(4.0, unit="m", minimum=0.2, maximum=20.0, meaning="deeper pixels are ignored")
+    link_angle: float = parameter(
+        np.deg2rad(5.0), unit="rad", minimum=0.001, maximum=1.0, meaning="normals of neighbouring patches that link"
+    )
+    link_offset: float = parameter(
+        0.004, unit="m", minimum=0.0005, maximum=0.1, meaning="offset of neighbouring patches from each other's plane"
+    )
+    grow_angle: float = parameter(
+        np.deg2rad(9.0), unit="rad", minimum=0.001, maximum=1.0, meaning="normal of a patch and of its region"
+    )
+    grow_offset: float = parameter(
+        0.005, unit="m", minimum=0.0005, maximum=0.1, meaning="offset of a patch from the plane of its region"
+    )
+    merge_angle: float = parameter(
+        np.deg2rad(2.5), unit="rad", minimum=0.001, maximum=1.0, meaning="normals of neighbouring regions that merge"
+    )
+    merge_offset: float = parameter(
+        0.006, unit="m", minimum=0.0005, maximum=0.1, meaning="offset of neighbouring regions that merge"
+    )
+    patch_sigma_max: float = parameter(
+        0.012, unit="m", minimum=0.001, maximum=0.1, meaning="spread of a flat patch's pixels about its plane"
+    )
+    patches_min: int = parameter(12, unit="1", minimum=1, maximum=10000, meaning="fewer patches are no region")
+    pixel_offset: float = parameter(
+        0.012, unit="m", minimum=0.001, maximum=0.1, meaning="pixels further from a plane do not belong to it"
+    )
+    bend_max: float = parameter(
+        0.005, unit="m", minimum=0.0005, maximum=0.1, meaning="spread of patch means about a region; more is curved"
+    )
+    area_min: float = parameter(0.01, unit="m^2", minimum=0.0, maximum=10.0, meaning="smaller regions are dropped")
+    hole_area_min: float = parameter(0.002, unit="m^2", minimum=0.0, maximum=1.0, meaning="smaller holes are filled")
+    slope_max: float = parameter(
+        np.deg2rad(40.0), unit="rad", minimum=0.0, maximum=np.pi / 2, meaning="steeper regions are no ground"
+    )
+    distance_min: float = parameter(
+        0.45, unit="m", minimum=0.0, maximum=5.0, meaning="regions nearer to the camera are the robot's own body"
+    )
+    outline_tolerance: float = parameter(
+        0.008, unit="m", minimum=0.0005, maximum=0.1, meaning="how far the simplified outline may stray"
+    )
+    convex_tolerance: float = parameter(
+        0.015, unit="m", minimum=0.0005, maximum=0.2, meaning="depth of notches that convex parts fill"
+    )
+
+
+@parameters
+class MemoryParameters:
+    """What is remembered of earlier frames."""
+
+    age_max: float = parameter(8.0, unit="s", minimum=0.1, maximum=600.0, meaning="older regions expire")
+    radius: float = parameter(2.0, unit="m", minimum=0.1, maximum=50.0, meaning="regions further from the feet expire")
+    key_distance: float = parameter(
+        0.15, unit="m", minimum=0.0, maximum=5.0, meaning="camera travel after which a frame is kept"
+    )
+    key_angle: float = parameter(
+        np.deg2rad(30.0), unit="rad", minimum=0.0, maximum=np.pi, meaning="camera turn after which a frame is kept"
+    )
+    same_height: float = parameter(
+        0.02, unit="m", minimum=0.001, maximum=0.5, meaning="old ground further from what is seen now has changed"
+    )
+    covered_share: float = parameter(
+        0.9, unit="1", minimum=0.0, maximum=1.0, meaning="an old region covered this far by newer ones is dropped"
+    )
+    regions_max: int = parameter(150, unit="1", minimum=1, maximum=10000, meaning="the oldest beyond this are dropped")
+    support_scale: float = parameter(
+        1.5, unit="1", minimum=1.0, maximum=3.0, meaning="assumed ground under an unseen sole, in soles"
+    )
+    sole_length: float = parameter(0.26, unit="m", minimum=0.05, maximum=1.0, meaning="length of a sole")
+    sole_width: float = parameter(0.138, unit="m", minimum=0.02, maximum=1.0, meaning="width of a sole")
