@@ -1,0 +1,122 @@
+"""The height of the CoM over the next phases: as commanded where the legs can reach, lower where they cannot.
+
+The cap at each moment is the height at which the straightest planned leg spans from its hip to its ankle. The height
+is a cubic B-spline under both: its control points are the lowest cap around them, smoothed, and it starts in the
+present motion, so that planning anew moves nothing suddenly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from skills.footsteps.footstep import Side
+from skills.geometry.pose import Array, wrap_angle
+from skills.walking.dcm_plan import DcmPlan
+from skills.walking.preview import PlannedPhase
+from skills.walking.robot_model import RobotModel
+from skills.walking.uniform_spline import UniformSpline, controls_of_motion, minimum_jerk
+from skills.walking.walking_parameters import WalkingParameters
+
+_SMOOTHING = np.array([1.0, 4.0, 6.0, 4.0, 1.0]) / 16.0
+_SAMPLES_PER_KNOT = 2
+_KEPT_OFFSET = 0.5
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ComState:
+    """The CoM when a height plan is made.
+
+    Attributes:
+        com: position, (3,) in the world [m].
+        velocity, acceleration: upwards [m/s, m/s^2].
+        p_com_pelvis: pelvis from the CoM, along the axes of the heading, (3,) [m].
+        yaw: heading of the pelvis [rad].
+    """
+
+    com: Array
+    velocity: float
+    acceleration: float
+    p_com_pelvis: Array
+    yaw: float
+
+
+def plan_height(
+    phases: Sequence[PlannedPhase], dcm_plan: DcmPlan, state: ComState, model: RobotModel, parameters: WalkingParameters
+) -> UniformSpline:
+    """CoM height over the time from now, a spline of one dimension [s, m]."""
+    spacing = parameters.height_knot
+    count = int(np.ceil(parameters.height_horizon / spacing))
+    times = np.arange(count * _SAMPLES_PER_KNOT + 1) * spacing / _SAMPLES_PER_KNOT
+    cap = reach_cap(phases, dcm_plan, state, model, parameters, times)
+    nominal = nominal_height(phases, float(state.com[2]), parameters, times)
+    reach = 4 * _SAMPLES_PER_KNOT
+    padded = np.pad(cap, reach, mode="edge")
+    lowest = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1).min(axis=1)
+    target = np.minimum(nominal, lowest)[::_SAMPLES_PER_KNOT]
+    target = np.convolve(np.pad(target, 2, mode="edge"), _SMOOTHING, mode="valid")
+    first = controls_of_motion(state.com[2:], np.array([state.velocity]), np.array([state.acceleration]), spacing)
+    # Knots -1, 0 and 1 are the present motion; the distance of knot 1 from its target fades over those behind.
+    fading = (first[2, 0] - target[1]) * _KEPT_OFFSET ** np.arange(1, count)
+    rest = np.append(target[2:] + fading, target[-1:])
+    return UniformSpline(0.0, spacing, np.append(first[:, 0], rest)[: count + 3, None])
+
+
+def nominal_height(phases: Sequence[PlannedPhase], height: float, parameters: WalkingParameters, times: Array) -> Array:
+    """CoM height without regard to reach: smooth from the present height to each phase's end, (M,) [m]."""
+    heights = np.empty(len(times))
+    start = 0.0
+    for phase in phases:
+        end_height = phase.ground_end + parameters.com_height
+        share = minimum_jerk((times - start) / max(phase.remaining, 1e-6))
+        chosen = times >= start
+        heights[chosen] = (height + (end_height - height) * share)[chosen]
+        start, height = start + phase.remaining, end_height
+    return heights
+
+
+def reach_cap(
+    phases: Sequence[PlannedPhase],
+    dcm_plan: DcmPlan,
+    state: ComState,
+    model: RobotModel,
+    parameters: WalkingParameters,
+    times: Array,
+) -> Array:
+    """Greatest CoM height at which both legs reach their ankles, (M,) [m]; times increase from 0 on [s]."""
+    com = dcm_plan.com(times, state.com[:2])
+    caps = np.empty(len(times))
+    start, yaw = 0.0, state.yaw
+    for index, phase in enumerate(phases):
+        end = start + phase.remaining if index + 1 < len(phases) else np.inf
+        chosen = (times >= start) & (times < end)
+        if np.any(chosen):
+            local = times[chosen] - start
+            turned = wrap_angle(phase.yaw_end - yaw) * np.clip(local / max(phase.remaining, 1e-6), 0.0, 1.0)
+            caps[chosen] = _leg_cap(phase, phase.elapsed + local, com[chosen], yaw + turned, state, model, parameters)
+        start, yaw = end, phase.yaw_end
+    return caps
+
+
+def _leg_cap(
+    phase: PlannedPhase,
+    times: Array,
+    com: Array,
+    yaw: Array,
+    state: ComState,
+    model: RobotModel,
+    parameters: WalkingParameters,
+) -> Array:
+    cap = np.full(len(times), np.inf)
+    c, s = np.cos(yaw), np.sin(yaw)
+    for side in Side:
+        leg = model.legs[side]
+        offset = state.p_com_pelvis + leg.p_pelvis_hip
+        ankle = phase.points(side, leg.p_sole_ankle, times)
+        dx = com[:, 0] + c * offset[0] - s * offset[1] - ankle[:, 0]
+        dy = com[:, 1] + s * offset[0] + c * offset[1] - ankle[:, 1]
+        upright = np.sqrt(np.maximum(0.0, leg.length(parameters.straightest_knee) ** 2 - dx * dx - dy * dy))
+        cap = np.minimum(cap, ankle[:, 2] + upright - offset[2])
+    return cap
