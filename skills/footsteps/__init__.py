@@ -1,1 +1,27 @@
-"""Footstep planning: where the next feet land."""
+"""Footstep planning: where the next feet land, on which ground, and how they get there."""
+
+from skills.footsteps.footstep import Footstep, FootstepPlan, PlanOutcome, Side, Stance
+from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
+from skills.footsteps.footstep_planner import plan_footsteps, plan_from_stance, terrain_ahead, whole_sole
+from skills.footsteps.swing_clearance import SwingClearance, swing_clearance
+from skills.footsteps.terrain import Foothold, RegionTerrain, Terrain, region_terrain
+
+__all__ = [
+    "Foothold",
+    "Footstep",
+    "FootstepParameters",
+    "FootstepPlan",
+    "PlanOutcome",
+    "RegionTerrain",
+    "Side",
+    "Stance",
+    "SwingClearance",
+    "Terrain",
+    "TerrainParameters",
+    "plan_footsteps",
+    "plan_from_stance",
+    "region_terrain",
+    "swing_clearance",
+    "terrain_ahead",
+    "whole_sole",
+]

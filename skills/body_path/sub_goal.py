@@ -1,0 +1,79 @@
+"""The sub-goal of look-and-step: how far along the body path the next steps go, and whether the goal is reached.
+
+Both look at the imminent stance, the one after the step under way (Calvert et al., 2022).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from skills.body_path.body_path import BodyPath
+from skills.footsteps.footstep import Stance
+from skills.geometry.pose import Array, wrap_angle
+from skills.parameters import parameter, parameters
+
+
+@parameters
+class SubGoalParameters:
+    """How far ahead the next steps go, and what counts as arrived."""
+
+    ahead: float = parameter(0.8, unit="m", meaning="sub-goal ahead of the stance", minimum=0.2, maximum=5.0)
+    ahead_in_curve: float = parameter(0.4, unit="m", meaning="the same in tight curves", minimum=0.2, maximum=5.0)
+    search_beyond: float = parameter(0.4, unit="m", meaning="search on past the sub-goal by", minimum=0.0, maximum=5.0)
+    tight_turn: float = parameter(0.6, unit="rad", meaning="turn within `ahead` that is a tight curve", minimum=0.0)
+    goal_distance: float = parameter(0.12, unit="m", meaning="position tolerance at the goal", minimum=0.01)
+    goal_yaw: float = parameter(0.2, unit="rad", meaning="heading tolerance at the goal", minimum=0.01)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SubGoal:
+    """A point on a body path to which the next steps lead.
+
+    Attributes:
+        path: the body path.
+        start_arc_length: where on it the imminent stance is [m].
+        arc_length: where the sub-goal is [m].
+        search_arc_length: how far the search for steps looks, at or past the sub-goal [m].
+    """
+
+    path: BodyPath
+    start_arc_length: float
+    arc_length: float
+    search_arc_length: float
+
+    @property
+    def pose_world(self) -> Array:
+        """The sub-goal, (3,): x, y [m], yaw [rad]."""
+        return self.path.at(self.arc_length)
+
+    @property
+    def final(self) -> bool:
+        """Whether the search reaches the end of the path."""
+        return self.search_arc_length >= self.path.length
+
+
+def sub_goal(path: BodyPath, imminent_stance: Stance, parameters: SubGoalParameters) -> SubGoal:
+    """Move along the path from the middle of the imminent stance: less far in tight curves."""
+    start = path.project(imminent_stance.mid_feet)
+    ahead = parameters.ahead_in_curve if _turn(path, start, parameters) > parameters.tight_turn else parameters.ahead
+    arc_length = min(start + ahead, path.length)
+    return SubGoal(path, start, arc_length, min(arc_length + parameters.search_beyond, path.length))
+
+
+def goal_reached(path: BodyPath, imminent_stance: Stance, parameters: SubGoalParameters) -> bool:
+    """Whether the imminent stance is at the end of the path, by position and heading."""
+    goal = path.waypoints_world[-1]
+    distance = np.linalg.norm(imminent_stance.mid_feet[:2] - goal[:2])
+    turn = abs(wrap_angle(imminent_stance.yaw - goal[2]))
+    return bool(distance <= parameters.goal_distance and turn <= parameters.goal_yaw)
+
+
+def _turn(path: BodyPath, start: float, parameters: SubGoalParameters) -> float:
+    """How much the path turns, in all, from the start to `ahead` [rad]."""
+    end = start + parameters.ahead
+    inner = [s for s in path.arc_lengths if start < s < end]
+    headings = [path.at(s)[2] for s in (start, *inner, end)]
+    return sum(abs(wrap_angle(after - before)) for before, after in pairwise(headings))

@@ -1,0 +1,115 @@
+"""Swing clearance: the way of a foot over the ground between two footholds, as two waypoints.
+
+The level sole is swept from lift-off to landing; the foot rises to the first waypoint, crosses at one height above all
+ground under the way, and comes down from the second. Where the ground near lift-off is high it rises first and then
+moves; where the ground near landing is high it arrives first and then descends. While it rises the sole turns level,
+while it descends it turns into the plane of the foothold, both in proportion to the way; on the legs clearance is
+checked with that tilt.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from skills.footsteps.footstep_parameters import FootstepParameters
+from skills.footsteps.terrain import Terrain, slopes
+from skills.geometry.pose import Array, Pose, readonly, wrap_angle
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SwingClearance:
+    """A way for a foot that clears the ground.
+
+    Attributes:
+        height: how far the sole's centre rises above the higher end of its way [m].
+        waypoints_world: the sole's centre where it starts and where it stops crossing, (2, 3) [m].
+    """
+
+    height: float
+    waypoints_world: Array
+
+
+def swing_clearance(
+    terrain: Terrain, T_world_start: Pose, T_world_end: Pose, parameters: FootstepParameters
+) -> SwingClearance:
+    """Find the way of a foot between two footholds that clears the ground by the parameters' margin."""
+    start, end = T_world_start.p, T_world_end.p
+    crossing = _crossing(T_world_start, T_world_end, terrain.resolution)
+    ground = -_clearances(terrain, crossing, parameters, parameters.swing_margin)
+    higher = max(start[2], end[2])
+    apex = max(float(np.max(ground)) + parameters.swing_clearance, higher + parameters.swing_height)
+    travelled = np.linalg.norm(crossing[:, :2] - start[:2], axis=1)
+    left = np.linalg.norm(crossing[:, :2] - end[:2], axis=1)
+    near_start = float(np.max(ground[travelled <= parameters.lift_off_zone])) - start[2]
+    near_end = float(np.max(ground[left <= parameters.landing_zone])) - end[2]
+    up_first = near_start > parameters.lift_off_obstacle
+    forward_first = near_end > parameters.landing_obstacle
+    first = _corner(terrain, T_world_start, T_world_end, apex, up_first, parameters)
+    last = _corner(terrain, T_world_end, T_world_start, apex, forward_first, parameters)
+    return SwingClearance(apex - higher, readonly((first, last)))
+
+
+def swing_soles(T_world_start: Pose, waypoints_world: Array, T_world_end: Pose, spacing: float) -> Array:
+    """The soles along a way, as its clearance is checked.
+
+    Args:
+        T_world_start: sole frame at lift-off.
+        waypoints_world: (2, 3) of a `SwingClearance`.
+        T_world_end: sole frame at landing.
+        spacing: largest distance between two of them [m].
+
+    Returns:
+        (N, 6) rows x, y, z, yaw of the sole's centre in the world and slopes dz/dx, dz/dy of the sole.
+    """
+    lift, landing = (
+        _leg(T, T_other, corner, spacing)
+        for T, T_other, corner in (
+            (T_world_start, T_world_end, waypoints_world[0]),
+            (T_world_end, T_world_start, waypoints_world[1]),
+        )
+    )
+    count = 2 + int(np.linalg.norm(waypoints_world[1] - waypoints_world[0]) / spacing)
+    crossing = np.linspace(lift[-1], landing[-1], count)
+    crossing[:, 3] = lift[-1, 3] + np.linspace(0.0, 1.0, count) * wrap_angle(landing[-1, 3] - lift[-1, 3])
+    return np.concatenate((lift, crossing, landing[::-1]))
+
+
+def _corner(
+    terrain: Terrain, T_world_near: Pose, T_world_far: Pose, apex: float, vertical: bool, parameters: FootstepParameters
+) -> Array:
+    """Where the leg from a foothold to the height of the crossing ends, (3,); right above it where no other clears."""
+    near, far = T_world_near.p, T_world_far.p
+    leads = () if vertical else (parameters.swing_lead, 0.5 * parameters.swing_lead)
+    for lead in leads:
+        corner = np.array((*(near[:2] + lead * (far[:2] - near[:2])), apex))
+        leg = _leg(T_world_near, T_world_far, corner, terrain.resolution)
+        risen = leg[:, 2] - near[2]
+        needed = np.minimum(parameters.swing_leg_clearance, 0.5 * risen - parameters.ground_above)
+        if np.all(_clearances(terrain, leg, parameters, 0.0) >= needed):
+            return corner
+    return np.array((near[0], near[1], apex))
+
+
+def _leg(T_world_near: Pose, T_world_far: Pose, corner_world: Array, spacing: float) -> Array:
+    """Soles from a foothold to a corner of the way, (N, 6): the slopes fade in proportion, the yaw follows the way."""
+    near, far = T_world_near.p, T_world_far.p
+    whole = np.linalg.norm(far[:2] - near[:2])
+    lead = 0.0 if whole < spacing else np.linalg.norm(corner_world[:2] - near[:2]) / whole
+    fraction = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(corner_world - near) / spacing))[:, None]
+    yaw = T_world_near.yaw + fraction * lead * wrap_angle(T_world_far.yaw - T_world_near.yaw)
+    return np.hstack((near + fraction * (corner_world - near), yaw, (1.0 - fraction) * np.array(slopes(T_world_near))))
+
+
+def _crossing(T_world_start: Pose, T_world_end: Pose, spacing: float) -> Array:
+    """Level soles at height 0 from above one foothold to above the other, (N, 6)."""
+    way = T_world_end.p[:2] - T_world_start.p[:2]
+    fraction = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(way) / spacing))[:, None]
+    yaw = T_world_start.yaw + fraction * wrap_angle(T_world_end.yaw - T_world_start.yaw)
+    return np.hstack((T_world_start.p[:2] + fraction * way, np.zeros_like(fraction), yaw, np.zeros((len(fraction), 2))))
+
+
+def _clearances(terrain: Terrain, soles: Array, parameters: FootstepParameters, margin: float) -> Array:
+    """Clearance of soles that are larger by a margin on all sides."""
+    return terrain.clearances(soles, 0.5 * parameters.sole_length + margin, 0.5 * parameters.sole_width + margin)
