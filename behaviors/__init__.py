@@ -8,6 +8,7 @@ from py_trees.common import Status
 
 from behaviors.builder import SettingError
 from behaviors.context import Context, Fault, LogLine, OperatorEvent
+from behaviors.drawing import DrawnLine, draw, drawn_lines
 from behaviors.executor import Executor, ExecutorMode, JobOutcome, JobRecord
 from behaviors.leaf import Call, Leaf, SkillLeaf, SkillParameters
 from behaviors.loader import check, load_tree, parse_tree
@@ -22,6 +23,7 @@ from behaviors.tree import Outcome, Transition, Tree
 __all__ = [
     "Call",
     "Context",
+    "DrawnLine",
     "Executor",
     "ExecutorMode",
     "Fault",
@@ -51,6 +53,8 @@ __all__ = [
     "Wire",
     "World",
     "check",
+    "draw",
+    "drawn_lines",
     "leaf",
     "load_tree",
     "parse_tree",

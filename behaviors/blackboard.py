@@ -38,9 +38,17 @@ class Slot:
         Raises:
             PortTypeError: where the value is not of the slot's type.
         """
+        self.check(value)
+        self.value = value
+
+    def check(self, value: Any) -> None:
+        """Refuse what may not be written.
+
+        Raises:
+            PortTypeError: where the value is not of the slot's type.
+        """
         if value is not None and not isinstance(value, self._check):
             raise PortTypeError(f'"{self.key}" takes {type_name(self.type)}, got {type(value).__name__}')
-        self.value = value
 
 
 class Blackboard:

@@ -94,7 +94,13 @@ def replaced(parameters: Any, values: Mapping[str, Any], target: str) -> Any:
             raise SettingError(
                 f'{target}: no parameter "{key}"{nearest(key, allowed)} (parameters: {", ".join(allowed)})'
             )
+    values = {key: _as_declared(value, getattr(parameters, key)) for key, value in values.items()}
     try:
         return dataclasses.replace(parameters, **values)
     except ParameterError as error:
         raise ParameterError(f"{target}.{error.key}", error.message) from error
+
+
+def _as_declared(value: Any, current: Any) -> Any:
+    """A whole number as the float that its parameter is, so that 1 and 1.0 leave the same trace."""
+    return float(value) if isinstance(current, float) and type(value) is int else value

@@ -101,7 +101,8 @@ def _append_array(out: bytearray, value: np.ndarray) -> bool:
 
 
 def _append_number(out: bytearray, value: np.generic) -> bool:
-    return _append_array(out, np.asarray(value)) or True
+    _append_array(out, np.asarray(value))
+    return True
 
 
 def _append_tuple(out: bytearray, value: tuple[Any, ...]) -> bool:
@@ -137,14 +138,23 @@ def _append_dict(out: bytearray, value: dict[Any, Any]) -> bool:
 def _encoder(cls: type) -> Callable[[bytearray, Any], bool]:
     """How values of a class are encoded."""
     if issubclass(cls, Enum):
-        members = {member: _head(b"e", cls, member.name) for member in cls}
-        return lambda out, value: bool(out.extend(members[value])) or True
+        return _enum_encoder(cls)
     if dataclasses.is_dataclass(cls):
         return _dataclass_encoder(cls)
     for base, append in _BASES:
         if issubclass(cls, base):
             return append
     raise CanonicalError(f"{cls.__module__}.{cls.__qualname__} has no canonical bytes; use a frozen dataclass")
+
+
+def _enum_encoder(cls: type[Enum]) -> Callable[[bytearray, Any], bool]:
+    members = {member: _head(b"e", cls, member.name) for member in cls}
+
+    def append(out: bytearray, value: Any) -> bool:
+        out += members[value]
+        return True
+
+    return append
 
 
 def _dataclass_encoder(cls: Any) -> Callable[[bytearray, Any], bool]:

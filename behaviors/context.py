@@ -48,7 +48,7 @@ class Fault:
     Attributes:
         time: robot time [s].
         path: the node.
-        phase: "setup", "start", "tick" or "stop".
+        phase: "setup", "start", "tick" or "stop"; "trace" where the tick could not be recorded.
         type: name of the exception's class.
         message: what it said.
         traceback: where it came from.

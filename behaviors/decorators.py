@@ -169,12 +169,14 @@ class Timeout(Decorator):
         self._started = self.context.time
 
     def update(self) -> Status:
-        """The child's status until the time is over, then FAILURE."""
-        if self.context.time - self._started >= self.parameters.after - TIME_TOLERANCE:
+        """The child's status, but FAILURE where it still runs when the time is over."""
+        status = self._tick_child()
+        is_over = self.context.time - self._started >= self.parameters.after - TIME_TOLERANCE
+        if status is Status.RUNNING and is_over:
             self.child.stop(Status.INVALID)
             self.reason = f"took longer than {self.parameters.after:g} s"
             return Status.FAILURE
-        return self._tick_child()
+        return status
 
 
 @parameters

@@ -81,6 +81,8 @@ class _FrameReader:
         name = self._text(document.get("tree"))
         if name and not TREE_NAME.fullmatch(name):
             self._add(document.get("tree"), f'got "{name}"; a tree is named in small letters, digits and "_"')
+        if name == "safe_stop":
+            self._add(document.get("tree"), '"safe_stop" names the branch that is ticked after a fault, not a tree')
         definition.name = name
         self._read_tree(document, definition)
         definition.safe_stop = document.get("safe_stop")

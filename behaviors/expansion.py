@@ -6,24 +6,25 @@ that are its ports, which become the keys that the use wires them to.
 
 from __future__ import annotations
 
-import re
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from behaviors.composites import COMPOSITES
 from behaviors.decorators import Decorator
-from behaviors.definition import KEY, Definition
+from behaviors.definition import Definition
 from behaviors.kinds import DECORATORS
 from behaviors.leaf import Leaf
+from behaviors.naming import get, sibling_names, slug
 from behaviors.ports import declared_inputs, declared_outputs
 from behaviors.registry import Registry
 from behaviors.spec import NodeSpec, Wire
+from behaviors.wiring import read_wires
 from strict_yaml import Entry, Kind, Location, Node, Problem, nearest, read_dataclass
 
 MAXIMUM_NODES = 5000
 MAXIMUM_DEPTH = 100
 
-_NODE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_ -]*")
 _SUBTREE_KEYS = ("tree", "name", "in", "out")
 
 
@@ -101,7 +102,7 @@ class _Expander:
         head = self._head(node, path)
         if head is None:
             return None
-        given = _get(head.node, "name")
+        given = get(head.node, "name")
         if given is not None:
             self._add(given, "a root takes the name of its tree", path)
         return self._node(head, scope, path, name, depth=1)
@@ -157,59 +158,56 @@ class _Expander:
         if body.kind is Kind.SEQUENCE:
             body = Node(Kind.MAPPING, body.location, (Entry("children", body.location, body),))
         parameters, given = self._parameters(cls, head, body, ("name", "children"), path)
-        listed = _get(body, "children")
+        listed = get(body, "children")
         if listed is None or listed.kind is not Kind.SEQUENCE or not listed.elements:
             got = "nothing" if listed is None else listed.describe()
             self._add(listed or head.location, f"got {got}, needs a list of children", path)
             return None
-        children = self._children([(element, "") for element in listed.elements], scope, path, depth)
+        children = self._children(listed.elements, scope, path, depth)
         return NodeSpec(cls, head.key, name, path, head.location, parameters, given, children=children)
 
     def _decorator(self, head: Entry, scope: _Scope, path: str, name: str, depth: int) -> NodeSpec | None:
         cls: type[Decorator] = DECORATORS[head.key]
-        parameters, given = self._parameters(cls, head, head.node, ("name", *cls.slots), path)
-        missing = [slot for slot in cls.slots if _get(head.node, slot) is None]
-        for slot in missing:
-            self._add(head.location, f'missing key "{slot}"', path)
-        slots = [(head.node.get(slot), slot) for slot in cls.slots if slot not in missing]
-        children = self._children([(node, slot) for node, slot in slots if node], scope, path, depth)
+        body = self._with_child(head, path)
+        parameters, given = self._parameters(cls, head, body, ("name", *cls.slots), path)
+        slots = [(slot, get(body, slot)) for slot in cls.slots]
+        for slot, node in slots:
+            if node is None:
+                self._add(head.location, f"{head.key} needs a {slot}", path)
+        children = self._children([node for _, node in slots if node is not None], scope, path, depth)
         return NodeSpec(cls, head.key, name, path, head.location, parameters, given, children=children)
 
-    def _children(self, nodes: list[tuple[Node, str]], scope: _Scope, path: str, depth: int) -> tuple[NodeSpec, ...]:
-        heads = [head for node, _ in nodes if (head := self._head(node, path)) is not None]
-        names = self._names(heads, scope, path)
+    def _with_child(self, head: Entry, path: str) -> Node:
+        """A decorator's body with the child under `child`, also where it is written in short: beside the parameters."""
+        body = head.node
+        if body.kind is Kind.SCALAR and isinstance(body.value, str):
+            return Node(Kind.MAPPING, body.location, (Entry("child", body.location, body),))
+        inline = [entry for entry in body.entries if self._is_kind(entry.key)]
+        if not inline:
+            return body
+        for entry in inline[1:]:
+            self._add(entry.location, f"{head.key} has one child, which is {inline[0].key} already", path)
+        child = Entry("child", inline[0].location, Node(Kind.MAPPING, inline[0].location, (inline[0],)))
+        if body.get("child") is not None:
+            self._add(child.location, f"{head.key} has one child, which is given already", path)
+        return Node(Kind.MAPPING, body.location, (*(entry for entry in body.entries if entry not in inline), child))
+
+    def _is_kind(self, key: str) -> bool:
+        return key == "subtree" or key in COMPOSITES or key in DECORATORS or self.registry.get(key) is not None
+
+    def _children(self, nodes: Sequence[Node], scope: _Scope, path: str, depth: int) -> tuple[NodeSpec, ...]:
+        heads = [head for node in nodes if (head := self._head(node, path)) is not None]
+        names = sibling_names(heads, path, self.problems)
         children = [
-            self._node(head, scope, f"{path}/{_slug(name)}", name, depth + 1)
+            self._node(head, scope, f"{path}/{slug(name)}", name, depth + 1)
             for head, name in zip(heads, names, strict=True)
         ]
         return tuple(child for child in children if child is not None)
 
-    def _names(self, heads: list[Entry], scope: _Scope, path: str) -> list[str]:
-        """Names of siblings: those given, which must differ, and for the others one made from the kind."""
-        taken: dict[str, Location] = {}
-        names: list[str] = []
-        for head in heads:
-            node = _get(head.node, "name")
-            name = node.value if node is not None else ""
-            if node is not None and not (isinstance(name, str) and _NODE_NAME.fullmatch(name)):
-                self._add(node, f'got {node.describe()}; a name is letters, digits, spaces, "_" and "-"', path)
-                name = ""
-            if node is not None and name and _slug(str(name)) in taken:
-                first = taken[_slug(str(name))]
-                self._add(node, f'two siblings are named "{name}", the first on line {first.line}', path)
-            elif node is not None and name:
-                taken[_slug(str(name))] = node.location
-            names.append(str(name or ""))
-        for index, head in enumerate(heads):
-            if not names[index]:
-                names[index] = _free_name(_default_name(head), taken)
-                taken[_slug(names[index])] = head.location
-        return names
-
     def _subtree(self, head: Entry, scope: _Scope, path: str, name: str, depth: int) -> NodeSpec | None:
         if not self._check_keys(head, head.node, _SUBTREE_KEYS, path):
             return None
-        chosen = _get(head.node, "tree")
+        chosen = get(head.node, "tree")
         trees = scope.definition.trees
         if chosen is None or not isinstance(chosen.value, str):
             self._add(chosen or head.location, 'missing key "tree": the name of a tree of this file', path)
@@ -257,13 +255,13 @@ class _Expander:
         ports: dict[str, str] = {}
         inputs = {port.name: port.type for port in definition.inputs}
         outputs = {port.name: port.type for port in definition.outputs}
-        for wire, location in self._wires(_get(head.node, "in"), inputs, "input", scope, path):
+        for wire, location in self._wires(head, "in", inputs, scope, path):
             ports[wire.port] = wire.key
             self.expansion.reads.append(Use(wire.key, inputs[wire.port], location, path, wire.port))
         for name in inputs:
             if name not in ports:
                 self._add(head.location, f'input "{name}" of tree "{definition.name}" is not wired', path)
-        for wire, _ in self._wires(_get(head.node, "out"), outputs, "output", scope, path):
+        for wire, _ in self._wires(head, "out", outputs, scope, path):
             ports[wire.port] = wire.key
         return ports
 
@@ -271,7 +269,7 @@ class _Expander:
         parameters, given = self._parameters(cls, head, head.node, ("name", "in", "out"), path)
         inputs, outputs = declared_inputs(cls), declared_outputs(cls)
         types = {port: declared.type for port, declared in inputs.items()}
-        reads = self._wires(_get(head.node, "in"), types, "input", scope, path)
+        reads = self._wires(head, "in", types, scope, path)
         for wire, location in reads:
             self.expansion.reads.append(Use(wire.key, inputs[wire.port].type, location, path, wire.port))
         wired = {wire.port for wire, _ in reads}
@@ -279,7 +277,7 @@ class _Expander:
             if declared.required and port not in wired:
                 self._add(head.location, f'input "{port}" of {head.key} is not wired', path)
         types = {port: declared.type for port, declared in outputs.items()}
-        writes = self._wires(_get(head.node, "out"), types, "output", scope, path)
+        writes = self._wires(head, "out", types, scope, path)
         for wire, location in writes:
             self.expansion.writes.append(Use(wire.key, outputs[wire.port].type, location, path, wire.port))
         return NodeSpec(
@@ -295,28 +293,11 @@ class _Expander:
         )
 
     def _wires(
-        self, node: Node | None, ports: dict[str, Any], what: str, scope: _Scope, path: str
+        self, head: Entry, direction: str, ports: dict[str, Any], scope: _Scope, path: str
     ) -> list[tuple[Wire, Location]]:
-        """Wires as written: `{port: key}`, or a list of ports whose keys have the same names."""
-        if node is None:
-            return []
-        if node.kind is Kind.SEQUENCE:
-            pairs = [(str(element.value), element.location, element) for element in node.elements]
-        elif node.kind is Kind.MAPPING:
-            pairs = list(node.entries)
-        else:
-            self._add(node, f"got {node.describe()}, needs a list of ports or a mapping of ports to keys", path)
-            return []
-        wires = []
-        for port, location, key in pairs:
-            if port not in ports:
-                allowed = ", ".join(ports) or "none"
-                self._add(location, f'unknown {what} "{port}"{nearest(port, ports)} ({what}s: {allowed})', path)
-            elif not isinstance(key.value, str) or not KEY.fullmatch(key.value):
-                self._add(key, f'got {key.describe()}; a key is named in small letters, digits and "_"', path)
-            else:
-                wires.append((Wire(port, scope.key(key.value)), key.location))
-        return wires
+        """The wires of a body, with keys as the whole tree knows them."""
+        written = read_wires(get(head.node, direction), ports, direction, path, self.problems)
+        return [(Wire(wire.port, scope.key(wire.key)), location) for wire, location in written]
 
     def _parameters(
         self, cls: type[Any], head: Entry, body: Node, structural: tuple[str, ...], path: str
@@ -348,27 +329,3 @@ class _Expander:
     def _add(self, place: Node | Location, message: str, path: str) -> None:
         location = place.location if isinstance(place, Node) else place
         self.problems.append(Problem(location, message, path))
-
-
-def _get(body: Node, key: str) -> Node | None:
-    return body.get(key) if body.kind is Kind.MAPPING else None
-
-
-def _default_name(head: Entry) -> str:
-    if head.key == "subtree":
-        tree = _get(head.node, "tree")
-        return str(tree.value) if tree is not None else "subtree"
-    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", head.key).lower()
-
-
-def _free_name(name: str, taken: dict[str, Location]) -> str:
-    if name not in taken:
-        return name
-    count = 2
-    while f"{name}_{count}" in taken:
-        count += 1
-    return f"{name}_{count}"
-
-
-def _slug(name: str) -> str:
-    return name.replace(" ", "_").lower()

@@ -138,10 +138,6 @@ class SkillLeaf(Leaf):
         """A call of `function(*arguments)`; budget and deadline as in `Call`."""
         return Call(function, arguments, budget, deadline)
 
-    def start(self) -> None:
-        """Nothing is under way."""
-        self._job = None
-
     def tick(self) -> Status:
         """Submit, then wait for the result.
 
@@ -155,7 +151,7 @@ class SkillLeaf(Leaf):
             self._job = self._submit(call)
         job = self._job
         if not job.done:
-            return self.running(self.reason or "computing")
+            return self.running("computing")
         self._job = None
         if job.error is not None:
             raise job.error
@@ -196,15 +192,11 @@ class LeafNode(Node):
         self._required = tuple((port, leaf.ports[name]) for name, port in inputs.items() if port.required)
 
     def run_setup(self) -> None:
-        """Call the leaf's setup hook.
-
-        Raises:
-            NodeFaultError: where it raised; the fault is recorded.
-        """
+        """Call the leaf's setup hook; what it raises is recorded as a fault."""
         try:
             self.leaf.setup()
         except Exception as error:
-            raise self._fault("setup", error) from error
+            self.context.record_fault(self.path, "setup", error)
 
     def update(self) -> Status:
         """Wait for inputs, start where it does not run, then tick."""

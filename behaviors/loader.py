@@ -53,6 +53,7 @@ def _leaves(registry: Registry | None) -> Registry:
     if registry is not None:
         return registry
     importlib.import_module("behaviors.leaves")
+    importlib.import_module("behaviors.plain_leaves")
     return leaf
 
 

@@ -75,8 +75,10 @@ class Trace:
         Raises:
             CanonicalError: where a value cannot be hashed.
         """
-        ports = {slot.key: self._digest(slot.key, slot.value) for slot in slots}
         update = self._running.update
+        if tick == 0:
+            update(encode((tuple(node.path for node in nodes), tuple(slot.key for slot in slots))))
+        ports = {slot.key: self._digest(slot.key, slot.value) for slot in slots}
         update(encode((tick, time)))
         update(bytes([_STATUS_BYTES[node.status] for node in nodes]))
         update(b"".join(ports.values()))

@@ -135,6 +135,7 @@ class Tree:
         self._first_tick_time: float | None = None
         self._due_index = 0
         self._is_set_up = False
+        self._is_stopped = False
 
     @property
     def next_tick_time(self) -> float:
@@ -152,20 +153,22 @@ class Tree:
         """The node of a path.
 
         Raises:
-            KeyError: where there is none.
+            LookupError: where there is none.
         """
         if path not in self._nodes_by_path:
-            raise KeyError(f'no node "{path}"{nearest(path, self._nodes_by_path)}')
+            raise LookupError(f'no node "{path}"{nearest(path, self._nodes_by_path)}')
         return self._nodes_by_path[path]
 
     def set_input(self, key: str, value: Any) -> None:
         """Put a value that comes from outside on the blackboard at the next tick; None takes it away.
 
         Raises:
-            KeyError: where the tree has no such input.
+            SettingError: where the tree has no such input.
+            PortTypeError: where the value is not of the input's type.
         """
         if key not in self.spec.inputs:
-            raise KeyError(f'tree "{self.spec.name}" has no input "{key}"{nearest(key, self.spec.inputs)}')
+            raise SettingError(f'tree "{self.spec.name}" has no input "{key}"{nearest(key, self.spec.inputs)}')
+        self.blackboard.slot(key, None).check(value)
         self._pending_inputs.append((key, value))
         self._pending_events.append(OperatorEvent(key, value))
 
@@ -196,7 +199,10 @@ class Tree:
         self._changes.append(ParameterChange(target, key, value))
 
     def setup(self) -> None:
-        """Call the setup hook of every leaf, once; the first tick does it where nobody did before."""
+        """Call the setup hook of every leaf, once; the first tick does it where nobody did before.
+
+        What a hook raises is recorded, and handled by the next tick.
+        """
         if self._is_set_up:
             return
         self._is_set_up = True
@@ -206,21 +212,21 @@ class Tree:
 
     def tick(self) -> None:
         """Tick the tree now; after a fault the safe stop, and after the end nothing but the trace."""
-        faults = len(self.context.faults)
         try:
             self._begin_tick()
             self.setup()
-            if self.outcome is Outcome.RUNNING and len(self.context.faults) == faults:
+            if self.outcome is Outcome.RUNNING and not self.context.faults:
                 self.root.tick_once()
-            elif self.outcome is Outcome.ERROR:
-                self._tick_safe_stop()
         except NodeFaultError:
             pass
         except Exception as error:
             self.context.record_fault(f"/{self.spec.name}", "tick", error)
-        if self.outcome is Outcome.RUNNING:
+        if self.outcome is Outcome.ERROR:
+            self._tick_safe_stop()
+        elif self.outcome is Outcome.RUNNING:
             self._conclude()
-        self._end_tick()
+        self._find_transitions()
+        self._record_trace()
 
     def drain_jobs(self) -> tuple[JobRecord, ...]:
         """Accounts of the computations that ended since the last call."""
@@ -274,16 +280,30 @@ class Tree:
             self.reason = self.root.reason
 
     def _tick_safe_stop(self) -> None:
-        """Tick the safe stop until it is done; where it raises itself, it is over."""
-        stop = self.safe_stop
-        if stop is None or stop.status in (Status.SUCCESS, Status.FAILURE):
+        """Tick the safe stop until it is done; where there is none, or it raises itself, the robot pauses."""
+        if self._is_stopped:
+            return
+        stop, faults = self.safe_stop, len(self.context.faults)
+        if stop is None:
+            self._pause_walking()
             return
         try:
             stop.tick_once()
+            self._is_stopped = stop.status is not Status.RUNNING
         except NodeFaultError:
-            stop.stop(Status.FAILURE)
+            stop.stop(Status.INVALID)
+        if len(self.context.faults) > faults:
+            self._pause_walking()
 
-    def _end_tick(self) -> None:
+    def _pause_walking(self) -> None:
+        """What remains where nothing else says how to stop."""
+        self._is_stopped = True
+        try:
+            self.context.robot.pause_walking()
+        except Exception as error:
+            self.context.record_fault("/safe_stop", "tick", error)
+
+    def _find_transitions(self) -> None:
         transitions = []
         for index, node in enumerate(self.nodes):
             before = self._statuses[index]
@@ -291,8 +311,15 @@ class Tree:
                 transitions.append(Transition(node.path, before, node.status, node.reason))
                 self._statuses[index] = node.status
         self.transitions = tuple(transitions)
+
+    def _record_trace(self) -> None:
         changes, self._changes = tuple(self._changes), []
         context = self.context
-        self.trace.record(
-            context.tick, context.time, self.nodes, self._slots, context.robot, context.operator_events, changes
-        )
+        try:
+            self.trace.record(
+                context.tick, context.time, self.nodes, self._slots, context.robot, context.operator_events, changes
+            )
+        except Exception as error:
+            context.record_fault(f"/{self.spec.name}", "trace", error)
+            if self.outcome is not Outcome.ERROR:
+                self._conclude()
