@@ -1,0 +1,136 @@
+import numpy as np
+import pytest
+
+from sim_envs.courses import Course, CourseError, Ground, course_names, load_course
+from skills.parameters import ParameterError
+
+ROWS, COLUMNS, PITCH, WIDTH = 19, 3, 0.37, 0.39
+
+
+def blocks(course: Course):
+    return [box for box in course.boxes if box.kind == "block"]
+
+
+def tops(course: Course):
+    return np.array([box.T_world_box @ np.array([0.0, 0.0, box.size[2] / 2]) for box in blocks(course)])
+
+
+def tilts(course: Course):
+    """Angle (N,) and horizontal direction (N, 2) of every block's upward normal."""
+    normals = np.array([box.T_world_box.R[:, 2] for box in blocks(course)])
+    return np.arccos(np.clip(normals[:, 2], -1, 1)), normals[:, :2]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_rough_has_the_statistics_of_the_reference_course(seed):
+    course = load_course("rough", seed)
+    top, (angles, directions) = tops(course), tilts(course)
+    tilted = angles > np.radians(1.0)
+    assert len(top) == ROWS * COLUMNS
+    assert 0.30 <= tilted.mean() <= 0.38
+    assert np.all(np.degrees(angles[tilted]) >= 11.0 - 1e-9)
+    assert np.all(np.degrees(angles[tilted]) <= 18.0 + 1e-9)
+    for axis in (0, 1):
+        assert np.any(directions[tilted, axis] > 0.1)
+        assert np.any(directions[tilted, axis] < -0.1)
+    assert 0.40 <= top[:, 2].max() <= 0.48
+    rows = top[:, 0].reshape(ROWS, COLUMNS)
+    np.testing.assert_allclose(np.diff(rows[:, 0]), PITCH)
+    np.testing.assert_allclose(np.sort(np.unique(top[:, 1].round(9))), [-WIDTH, 0.0, WIDTH])
+    assert 6.9 <= ROWS * PITCH <= 7.1
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_rough_rows_differ_by_what_a_biped_steps(seed):
+    height = tops(load_course("rough", seed))[:, 2].reshape(ROWS, COLUMNS)
+    assert np.abs(np.diff(height, axis=0)).max() < 0.20
+    assert np.abs(np.diff(height, axis=1)).max() <= 0.10
+    assert abs(height[0]).max() < 0.10
+    assert abs(height[-1]).max() < 0.10
+
+
+@pytest.mark.parametrize("name", ["flat", "uneven_flat", "rough", "rough_wide"])
+def test_same_seed_gives_the_same_course(name):
+    def everything(seed):
+        course = load_course(name, seed)
+        return [(b.name, b.size, b.kind, b.T_world_box.R.tobytes(), b.T_world_box.p.tobytes()) for b in course.boxes]
+
+    assert everything(4) == everything(4)
+    if name != "flat":
+        assert everything(4) != everything(5)
+
+
+@pytest.mark.parametrize("name", ["flat", "uneven_flat", "rough"])
+def test_generated_courses_cannot_be_walked_around(name):
+    course = load_course(name, 1)
+    ground = Ground(course.boxes)
+    assert course.start == (0.0, 0.0, 0.0)
+    assert course.goal[0] == pytest.approx(8.0, abs=0.1)
+    x = np.arange(-0.7, course.goal[0] + 0.7, 0.01)
+    half_width = 1.2 if name == "flat" else 0.5 * COLUMNS * WIDTH
+    for side in (-1, 1):
+        beside = np.column_stack((x, np.full_like(x, side * (half_width + 0.07))))
+        assert np.all(np.isneginf(ground.ground_height(beside)))
+
+
+def test_rough_fills_the_way_without_gaps():
+    for seed in range(5):
+        ground = Ground(load_course("rough", seed).boxes)
+        x, y = np.meshgrid(np.arange(-0.7, 8.7, 0.011), np.arange(-0.58, 0.58, 0.013))
+        height = ground.ground_height(np.column_stack((x.ravel(), y.ravel())))
+        assert height.min() > -0.15
+
+
+def test_boxes_have_unique_names():
+    for name in course_names():
+        names = [box.name for box in load_course(name).boxes]
+        assert len(set(names)) == len(names)
+
+
+def test_uneven_flat_is_level_and_uneven():
+    for seed in range(10):
+        course = load_course("uneven_flat", seed)
+        angles, _ = tilts(course)
+        heights = tops(course)[:, 2]
+        assert angles.max() < 1e-9
+        assert set(heights.round(4)) == {0.0, 0.0884, 0.1415, 0.192}
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, 0.7, 1.0])
+def test_tilted_share_is_kept_exactly(share):
+    angles, _ = tilts(load_course("rough", 2, tilted_share=share))
+    assert np.count_nonzero(angles > 0.1) == round(share * ROWS * COLUMNS)
+
+
+def test_height_spread_widens_the_jitter():
+    flat_profile = {"peak": 0.0, "tilted_share": 0.0}
+    for spread in (0.0, 0.05, 0.15):
+        heights = np.concatenate(
+            [tops(load_course("rough", s, height_spread=spread, **flat_profile))[:, 2] for s in range(10)]
+        )
+        assert np.abs(heights).max() <= spread
+        assert np.abs(heights).max() >= 0.95 * spread
+
+
+@pytest.mark.parametrize("share", [0.15, 0.30])
+def test_missing_blocks_leave_one_in_every_row(share):
+    for seed in range(10):
+        course = load_course("rough", seed, missing_share=share)
+        rows = [box.name.split("_")[1] for box in blocks(course)]
+        assert len(rows) == ROWS * COLUMNS - round(share * ROWS * COLUMNS)
+        assert len(set(rows)) == ROWS
+
+
+def test_unusable_names_and_options_say_what_is_allowed():
+    with pytest.raises(CourseError, match=r'unknown course "ruogh"; did you mean "rough"\? \(courses: flat, .*stairs'):
+        load_course("ruogh")
+    with pytest.raises(CourseError, match=r'no option "tilted_shar"; did you mean "tilted_share"\?'):
+        load_course("rough", tilted_shar=0.5)
+    with pytest.raises(ParameterError, match=r"tilted_share: got 2, allowed: 0 \.\. 1"):
+        load_course("rough", tilted_share=2)
+    with pytest.raises(CourseError, match="goal_y: got 2, the pad reaches"):
+        load_course("rough", goal_y=2.0)
+    with pytest.raises(CourseError, match="above tilt_maximum"):
+        load_course("rough", tilt_minimum=0.4)
+    with pytest.raises(CourseError, match='course "stairs" is a file and takes no options, got peak'):
+        load_course("stairs", peak=1.0)
