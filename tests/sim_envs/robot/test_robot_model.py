@@ -12,6 +12,7 @@ from sim_envs.robot import Biped, RobotDescription, pelvis_pose, qpos_from_confi
 from skills.geometry.pose import Pose
 
 _SAMPLES = 100
+_WALKING_PELVIS_HEIGHT = 0.864
 
 
 @pytest.fixture(scope="module")
@@ -129,7 +130,7 @@ def test_depth_camera_looks_47_degrees_below_the_horizon_from_above_one_metre(mo
     mj_data = physics.data.ptr
     description = RobotDescription()
     physics.reset()
-    mj_data.qpos[2] = description.nominal_pelvis_height
+    mj_data.qpos[2] = _WALKING_PELVIS_HEIGHT
     physics.forward()
     camera, body = mj_data.camera("atlas_class/depth"), mj_data.body("atlas_class/torso")
     T_world_camera = Pose(body.xmat.reshape(3, 3), body.xpos) @ description.T_body_camera

@@ -1,0 +1,227 @@
+"""A world without dynamics: the robot is where its walking controller wants it to be, and falls where that is absurd.
+
+Each control step the walking controller's configuration is written into MuJoCo, whose kinematics then place every shape
+for the sensors. Nothing is integrated, so a minute of walking takes seconds; what physics would punish is found by
+comparing soles and DCM with the true ground.
+"""
+
+# mujoco keeps its types in binary modules without stubs.
+# pyright: reportAttributeAccessIssue=false
+
+from __future__ import annotations
+
+from typing import Any
+
+import mujoco
+import numpy as np
+from dm_control import mjcf
+
+from sim_envs.courses.course import Course
+from sim_envs.robot import Biped, RobotDescription, qpos_from_configuration
+from sim_envs.sensors import DepthCamera, DepthCameraParameters, DepthNoise
+from sim_envs.worlds.arena import CourseArena
+from sim_envs.worlds.box_motion import BoxMotions
+from sim_envs.worlds.depth_frames import DepthFrames
+from sim_envs.worlds.falls import FallDetector, FallParameters
+from sim_envs.worlds.state_drift import StateDrift, StateDriftParameters
+from sim_envs.worlds.true_ground import PIT, TrueGround
+from skills.footsteps.footstep import Footstep, Side, Stance
+from skills.geometry.camera import DepthImage
+from skills.geometry.pose import Array, Pose
+from skills.parameters import parameter, parameters
+from skills.walking import KinematicWalker, RobotModel, WalkingParameters
+from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingPhase, WalkingStatus
+
+_ROUNDING = 1e-9  # Robot time is a sum of floats; what is due this soon is due now [s].
+
+
+@parameters
+class KinematicWorldParameters:
+    """Rates and start of the kinematic world."""
+
+    control_rate: float = parameter(
+        100.0, unit="Hz", minimum=10.0, maximum=1000.0, meaning="control steps a second of robot time"
+    )
+    stance_width: float = parameter(
+        0.24, unit="m", minimum=0.15, maximum=0.6, meaning="distance between the soles' centres at the start"
+    )
+
+
+class KinematicWorld:
+    """A robot on a course, tracked perfectly.
+
+    Args:
+        course: the ground; the robot starts at its start.
+        seed: of the sensor noise.
+
+    Raises:
+        ValueError: where there is no ground under a foot at the start.
+    """
+
+    def __init__(
+        self,
+        course: Course,
+        *,
+        seed: int = 0,
+        parameters: KinematicWorldParameters | None = None,
+        robot: RobotDescription | None = None,
+        walking: WalkingParameters | None = None,
+        camera: DepthCameraParameters | None = None,
+        noise: DepthNoise | None = None,
+        falls: FallParameters | None = None,
+        drift: StateDriftParameters | None = None,
+    ) -> None:
+        self.course = course
+        self.parameters = parameters or KinematicWorldParameters()
+        self.robot = robot or RobotDescription()
+        self._box_poses = {box.name: box.T_world_box for box in course.boxes}
+        self._box_index = {box.name: i for i, box in enumerate(course.boxes)}
+        self.ground = TrueGround(np.array([box.size for box in course.boxes]), tuple(self._box_poses.values()))
+        self._motions = BoxMotions(course.events)
+
+        self._arena, self._biped = CourseArena(course), Biped(self.robot)
+        self._arena.add_free_entity(self._biped)
+        self.physics = mjcf.Physics.from_mjcf_model(self._arena.mjcf_model)
+        self._camera_body: Any = self.physics.bind(self._biped.camera_body)
+        self._frames = DepthFrames(
+            DepthCamera(self.model, camera or DepthCameraParameters(), noise or DepthNoise(), seed=seed)
+        )
+
+        model = RobotModel(self.robot.mjcf_path, self.robot.sole_length, self.robot.sole_width)
+        self._walker = KinematicWalker(model, walking or WalkingParameters(), self._start_stance())
+        self._falls = FallDetector(falls or FallParameters(), self.robot, self.ground)
+        self._drift = StateDrift(drift or StateDriftParameters())
+        self._control_steps = 0
+        self._asked_time = 0.0
+        self._pose_robot(self._walker.output.q)
+        self._place_shapes()
+        self._take_frame()
+
+    @property
+    def time(self) -> float:
+        """Robot time [s]."""
+        return self._control_steps / self.parameters.control_rate
+
+    @property
+    def model(self) -> mujoco.MjModel:
+        """The compiled model, for renderers."""
+        return self.physics.model.ptr
+
+    @property
+    def depth_camera(self) -> DepthCamera:
+        """The simulated depth camera."""
+        return self._frames.camera
+
+    def state(self) -> RobotState:
+        """The robot's estimate of its state."""
+        return self._drift.estimated_state(self.true_state())
+
+    def true_state(self) -> RobotState:
+        """The state without estimation error."""
+        return self._walker.state()
+
+    def status(self) -> WalkingStatus:
+        """What the walking controller is doing; fallen, and why, once it or the world calls it a fall."""
+        return self._drift.estimated_status(self._walker.status())
+
+    def depth_image(self) -> DepthImage | None:
+        """The newest depth image, rendered when it is first asked for."""
+        return self._frames.newest()
+
+    def send_footsteps(self, steps: tuple[Footstep, ...]) -> None:
+        """Replace all queued steps; a robot that has fallen takes none.
+
+        Raises:
+            ValueError: where the steps cannot follow the current one; the queue stays as it was.
+        """
+        self._walker.send(tuple(self._drift.true_step(step) for step in steps))
+
+    def pause_walking(self) -> None:
+        """Finish the current step, then stand; queued steps are dropped."""
+        self._walker.pause()
+
+    def drain_events(self) -> tuple[StepEvent, ...]:
+        """Step events since the last call, oldest first."""
+        return tuple(self._drift.estimated_event(event) for event in self._walker.drain_events())
+
+    def drain_log(self) -> tuple[ControlSample, ...]:
+        """Control-rate samples since the last call, oldest first."""
+        return tuple(self._drift.estimated_sample(sample) for sample in self._walker.drain_log())
+
+    def advance(self, duration: float) -> None:
+        """Let robot time run on, by whole control steps; what is left of the duration counts next time [s]."""
+        self._asked_time += duration
+        while (self._control_steps + 1) / self.parameters.control_rate <= self._asked_time + _ROUNDING:
+            self._control_step()
+
+    def box_poses(self) -> dict[str, tuple[tuple[float, ...], tuple[float, ...]]]:
+        """Position (3) [m] and quaternion wxyz (4) of every box of the course by name."""
+        return {name: (tuple(T.p), tuple(T.quaternion_wxyz)) for name, T in self._box_poses.items()}
+
+    def move_box(self, name: str, T_world_box: Pose) -> None:
+        """Put a box elsewhere; the sensors see it there from the next control step on.
+
+        Raises:
+            ValueError: where the course has no such box.
+        """
+        if name not in self._box_poses:
+            raise ValueError(f"got box {name!r}, {self.course.name} has {', '.join(self._box_poses)}")
+        self._box_poses[name] = T_world_box
+        self.ground.move(self._box_index[name], T_world_box)
+        self._arena.move_box(self.physics, name, T_world_box)
+
+    def geom_poses(self) -> tuple[Array, Array]:
+        """Copies of all shapes' positions (G, 3) [m] and rotations (G, 3, 3) in the world, for renderers."""
+        data = self.physics.data.ptr
+        return data.geom_xpos.copy(), data.geom_xmat.reshape(-1, 3, 3).copy()
+
+    def _control_step(self) -> None:
+        self._control_steps += 1
+        for name, T_world_box in self._motions.advance(self.time, self._pelvis, self._box_poses).items():
+            self.move_box(name, T_world_box)
+        self._walk()
+        self._place_shapes()
+        self._drift.advance(self.time, 1.0 / self.parameters.control_rate, self._pelvis)
+        if self._frames.due(self.time):
+            self._take_frame()
+
+    def _walk(self) -> None:
+        output = self._walker.advance(1.0 / self.parameters.control_rate)
+        self._pose_robot(output.q)
+        if output.phase is not WalkingPhase.FALLEN:
+            failure = self._falls.check(output, self._walker.status())
+            if failure:
+                self._walker.fall(failure)
+
+    @property
+    def _pelvis(self) -> Array:
+        return self.physics.data.ptr.qpos[:3]
+
+    def _start_stance(self) -> Stance:
+        """Both feet beside each other on the ground at the course's start."""
+        x, y, yaw = self.course.start
+        middle = Pose.from_xyz_rpy((x, y, 0.0), (0.0, 0.0, yaw))
+        soles = []
+        for side in Side:
+            p = middle @ np.array((0.0, 0.5 * side.sign * self.parameters.stance_width, 0.0))
+            height = self.ground.heights(p[None])[0]
+            if height == PIT:
+                raise ValueError(
+                    f"course {self.course.name}: there is no ground under the {side.value} foot at the start"
+                )
+            soles.append(Pose.from_xyz_rpy((p[0], p[1], height), (0.0, 0.0, yaw)))
+        return Stance(*soles)
+
+    def _pose_robot(self, q: Array) -> None:
+        self.physics.data.ptr.qpos[:] = qpos_from_configuration(q)
+
+    def _place_shapes(self) -> None:
+        mujoco.mj_kinematics(self.model, self.physics.data.ptr)
+        mujoco.mj_camlight(self.model, self.physics.data.ptr)
+
+    def _take_frame(self) -> None:
+        body = self._camera_body
+        T_world_body = Pose(body.xmat.reshape(3, 3), body.xpos)
+        T_world_camera = T_world_body @ self.robot.T_body_camera
+        T_world_camera_estimate = self._drift.T_estimate_world @ T_world_camera
+        self._frames.take(self.time, self.physics.data.ptr, T_world_camera, T_world_camera_estimate)
