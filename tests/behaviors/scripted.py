@@ -65,7 +65,7 @@ toys = Registry()
 class ScriptParameters:
     """What a scripted leaf says."""
 
-    says: str = parameter("S", unit="1", meaning="one letter a tick: S, F, R; X raises; the last one repeats")
+    says: str = parameter("S", unit="1", meaning="one letter a tick: S, F or R; the last one repeats")
     breaks: str = parameter(
         "", unit="1", meaning="the hook that raises", choices=("", "setup", "start", "tick", "stop")
     )
