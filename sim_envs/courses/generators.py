@@ -137,9 +137,11 @@ def generate(name: str, seed: int = 0, **options: Any) -> Course:
     """Make the course of a generator.
 
     Raises:
-        CourseError: where an option is unknown, or contradicts another.
+        CourseError: where the seed is negative, or an option is unknown or contradicts another.
         ParameterError: where an option's value is not allowed.
     """
+    if seed < 0:
+        raise CourseError(f'course "{name}": got seed {seed}, needs a whole number from 0')
     generator, parameter_class, own_options = GENERATORS[name]
     allowed = [field.name for field in dataclasses.fields(parameter_class)]
     for option in options:

@@ -134,3 +134,5 @@ def test_unusable_names_and_options_say_what_is_allowed():
         load_course("rough", tilt_minimum=0.4)
     with pytest.raises(CourseError, match='course "stairs" is a file and takes no options, got peak'):
         load_course("stairs", peak=1.0)
+    with pytest.raises(CourseError, match="got seed -1, needs a whole number from 0"):
+        load_course("rough", -1)

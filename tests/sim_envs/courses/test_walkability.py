@@ -40,8 +40,9 @@ def is_walkable(course):
         for j in range(1, int(REACH / CELL) + 1)
         if WIDTHS[0] <= j * CELL <= WIDTHS[1] and np.hypot(i * CELL, j * CELL - 0.24) <= REACH
     ]
-    start: tuple[int, int, int] = (int(np.argmin(abs(x))), int(np.argmin(abs(y - 0.12))), 0)
-    queue, seen = deque([start]), {start}
+    start = (int(np.argmin(abs(x))), int(np.argmin(abs(y - 0.12))), 0)
+    queue: deque[tuple[int, int, int]] = deque([start])
+    seen = set(queue)
     while queue:
         i, j, foot = queue.popleft()
         if np.hypot(x[i] - course.goal[0], y[j] - course.goal[1]) < 0.25:
