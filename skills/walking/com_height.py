@@ -1,19 +1,20 @@
 """The height of the CoM over the next phases: as commanded where the legs can reach, lower where they cannot.
 
-The cap at each moment is the height at which the straightest planned leg spans from its hip to its ankle. The height
+The cap at each moment is the height at which the straightest planned leg spans from its hip to its ankle; legs count as
+mass at their ankles, because a leg that reaches out moves the pelvis away from the CoM. The height
 is a cubic B-spline under both: its control points are the lowest cap around them, smoothed, and it starts in the
 present motion, so that planning anew moves nothing suddenly.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from skills.footsteps.footstep import Side
-from skills.geometry.pose import Array, wrap_angle
+from skills.geometry.pose import Array, rotation_z, wrap_angle
 from skills.walking.dcm_plan import DcmPlan
 from skills.walking.preview import PlannedPhase
 from skills.walking.robot_model import RobotModel
@@ -32,14 +33,14 @@ class ComState:
     Attributes:
         com: position, (3,) in the world [m].
         velocity, acceleration: upwards [m/s, m/s^2].
-        p_com_pelvis: pelvis from the CoM, along the axes of the heading, (3,) [m].
+        p_pelvis_body: `body_offset`, (3,) [m].
         yaw: heading of the pelvis [rad].
     """
 
     com: Array
     velocity: float
     acceleration: float
-    p_com_pelvis: Array
+    p_pelvis_body: Array
     yaw: float
 
 
@@ -95,28 +96,33 @@ def reach_cap(
         if np.any(chosen):
             local = times[chosen] - start
             turned = wrap_angle(phase.yaw_end - yaw) * np.clip(local / max(phase.remaining, 1e-6), 0.0, 1.0)
-            caps[chosen] = _leg_cap(phase, phase.elapsed + local, com[chosen], yaw + turned, state, model, parameters)
+            ankles = {side: phase.points(side, model.legs[side].p_sole_ankle, phase.elapsed + local) for side in Side}
+            caps[chosen] = _leg_cap(ankles, com[chosen], yaw + turned, state, model, parameters.straightest_knee)
         start, yaw = end, phase.yaw_end
     return caps
 
 
+def body_offset(com: Array, ankles: Mapping[Side, Array], p_pelvis: Array, yaw: float, model: RobotModel) -> Array:
+    """Place of the mass other than `mass_at_ankle` from the pelvis, along the axes of the heading, (3,) [m]."""
+    share = sum(model.legs[side].mass_at_ankle for side in Side)
+    pulled = sum((model.legs[side].mass_at_ankle * ankles[side] for side in Side), np.zeros(3))
+    return rotation_z(-yaw) @ ((model.mass * com - pulled) / (model.mass - share) - p_pelvis)
+
+
 def _leg_cap(
-    phase: PlannedPhase,
-    times: Array,
-    com: Array,
-    yaw: Array,
-    state: ComState,
-    model: RobotModel,
-    parameters: WalkingParameters,
+    ankles: Mapping[Side, Array], com: Array, yaw: Array, state: ComState, model: RobotModel, knee: float
 ) -> Array:
-    cap = np.full(len(times), np.inf)
+    """The lower of both legs' caps, (M,), from ankles (M, 3), CoM (M, 2) and heading (M,)."""
+    share = sum(model.legs[side].mass_at_ankle for side in Side)
+    pulled = sum((model.legs[side].mass_at_ankle * ankles[side] for side in Side), np.zeros((len(com), 3)))
+    body = (model.mass * com - pulled[:, :2]) / (model.mass - share)
     c, s = np.cos(yaw), np.sin(yaw)
+    pelvis = np.full(len(com), np.inf)
     for side in Side:
         leg = model.legs[side]
-        offset = state.p_com_pelvis + leg.p_pelvis_hip
-        ankle = phase.points(side, leg.p_sole_ankle, times)
-        dx = com[:, 0] + c * offset[0] - s * offset[1] - ankle[:, 0]
-        dy = com[:, 1] + s * offset[0] + c * offset[1] - ankle[:, 1]
-        upright = np.sqrt(np.maximum(0.0, leg.length(parameters.straightest_knee) ** 2 - dx * dx - dy * dy))
-        cap = np.minimum(cap, ankle[:, 2] + upright - offset[2])
-    return cap
+        offset = leg.p_pelvis_hip - state.p_pelvis_body
+        dx = body[:, 0] + c * offset[0] - s * offset[1] - ankles[side][:, 0]
+        dy = body[:, 1] + s * offset[0] + c * offset[1] - ankles[side][:, 1]
+        upright = np.sqrt(np.maximum(0.0, leg.length(knee) ** 2 - dx * dx - dy * dy))
+        pelvis = np.minimum(pelvis, ankles[side][:, 2] + upright - leg.p_pelvis_hip[2])
+    return ((pelvis + state.p_pelvis_body[2]) * (model.mass - share) + pulled[:, 2]) / model.mass

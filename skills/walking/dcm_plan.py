@@ -90,7 +90,8 @@ def plan_from_present(
 
     Args:
         omega: sqrt(gravity / CoM height) [1/s].
-        dcm, cop: present, (2,) [m].
+        dcm: present DCM, (2,) [m].
+        cop: present CoP, (2,) [m].
         durations: of the phases, the rest of the present one first [s].
         cop_ends: CoP at the end of each phase, (2,) [m].
         into_support: nearest point of the present support polygon.

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from skills.geometry.pose import Pose, rotation_y
-from skills.walking.uniform_spline import minimum_jerk
+from skills.walking.uniform_spline import minimum_jerk_at
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,7 +27,7 @@ class HeelLift:
 
     def pose(self, t: float) -> Pose:
         """T_world_sole at a time since the phase's start [s]."""
-        pitch = self.pitch * float(minimum_jerk(np.float64((t - self.start) / self.duration)))
+        pitch = self.pitch * minimum_jerk_at((t - self.start) / self.duration)
         return pitched_about_toe(self.T_world_sole, self.toe, pitch)
 
     def lifted(self, t: float) -> bool:

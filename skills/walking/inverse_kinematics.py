@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import pinocchio as pin
+import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from skills.footsteps.footstep import Side, Stance
 from skills.geometry.pose import Array
@@ -19,6 +19,7 @@ from skills.walking.robot_model import RobotModel
 
 # Rows: CoM x, y, z; pelvis orientation 3; then position 3 and orientation 3 of the left and of the right sole.
 _WEIGHTS = np.array([0.3, 0.3, 0.02] + [0.02] * 3 + ([1.0] * 3 + [0.3] * 3) * 2)
+_DAMPING = 0.01
 _LEAST_DAMPING = 1e-10
 _LONGEST_STEP = 0.3
 
@@ -104,7 +105,7 @@ class InverseKinematics:
         """One Newton step from the configuration that the data was computed at, joints kept within limits."""
         jacobian = self._jacobian()
         gram, gradient = jacobian.T @ jacobian, jacobian.T @ error
-        gram[np.diag_indices_from(gram)] += 0.01 * float(error @ error) + _LEAST_DAMPING
+        gram.flat[:: len(gram) + 1] += _DAMPING * float(error @ error) + _LEAST_DAMPING
         angles = q[self._places]
         step = np.linalg.solve(gram, gradient)
         free = np.ones(18, dtype=bool)

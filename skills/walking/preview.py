@@ -88,7 +88,7 @@ def transfer_phase(
 
 
 def swing_phase(
-    stance: Stance, step: Footstep, swing: SwingTrajectory, elapsed: float, parameters: WalkingParameters
+    stance: Stance, step: Footstep, swing: SwingTrajectory | None, elapsed: float, parameters: WalkingParameters
 ) -> PlannedPhase:
     """The single support of a step."""
     carrying = stance.sole(step.side.opposite)
@@ -97,7 +97,7 @@ def swing_phase(
     return PlannedPhase(
         stance=stance,
         elapsed=elapsed,
-        remaining=max(0.0, swing.duration - elapsed),
+        remaining=max(0.0, step.swing_duration - elapsed),
         side=step.side,
         swing=swing,
         heel=None,
@@ -132,6 +132,7 @@ def phases_of_steps(
     steps: Sequence[Footstep],
     last_side: Side | None,
     toe: float,
+    horizon: float,
     parameters: WalkingParameters,
 ) -> list[PlannedPhase]:
     """The phases of steps to come, each with its transfer, until the robot rests.
@@ -142,6 +143,7 @@ def phases_of_steps(
         steps: in order.
         last_side: foot that moved last where there are no steps.
         toe: toe line before the sole's centre [m].
+        horizon: phases that start later have no swing trajectory [s].
         parameters: settings of walking.
     """
     phases: list[PlannedPhase] = []
@@ -154,8 +156,10 @@ def phases_of_steps(
             heel = HeelLift(flat, toe, parameters.heel_lift, start, step.transfer_duration - start)
             phases.append(transfer_phase(stance, step, 0.0, step.transfer_duration, heel, parameters))
             lift_off = pitched_about_toe(flat, toe, parameters.heel_lift)
-        swing = SwingTrajectory(lift_off, step, parameters)
+            horizon -= step.transfer_duration
+        swing = SwingTrajectory(lift_off, step, parameters) if horizon > 0.0 else None
         phases.append(swing_phase(stance, step, swing, 0.0, parameters))
+        horizon -= step.swing_duration
         stance, last_side = stance.with_sole(step.side, step.T_world_sole), step.side
     phases.append(resting_phase(stance, last_side, parameters.final_transfer, parameters))
     return phases

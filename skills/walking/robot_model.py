@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import pinocchio as pin
+import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from skills.footsteps.footstep import Side
 from skills.geometry.pose import Array, Pose, readonly
@@ -29,6 +29,7 @@ class Leg:
         p_sole_ankle: ankle in the sole frame, (3,) [m].
         thigh, shank: hip pitch to knee, knee to ankle [m].
         knee_offset: knee angle at which hip, knee and ankle are in line [rad].
+        mass_at_ankle: mass that, put at the ankle, moves the CoM as the leg does when hip or ankle moves [kg].
     """
 
     joints: tuple[int, ...]
@@ -37,6 +38,7 @@ class Leg:
     thigh: float
     shank: float
     knee_offset: float
+    mass_at_ankle: float
 
     def length(self, knee: float) -> float:
         """Distance from hip to ankle at a knee angle [m]."""
@@ -125,6 +127,9 @@ class RobotModel:
         pin.forwardKinematics(model, self._data, q)
         hip, knee, ankle = (np.array(self._data.oMi[chain[i]].translation) for i in (2, 3, 4))
         thigh, shank = hip - knee, knee - ankle
+        bodies = [(model.inertias[joint], self._data.oMi[joint]) for joint in chain]
+        heights = [(inertia.mass, float((placement * inertia.lever)[2])) for inertia, placement in bodies]
+        shares = [mass * np.clip((hip[2] - height) / (hip[2] - ankle[2]), 0.0, 1.0) for mass, height in heights]
         return Leg(
             joints=tuple(joint - 2 for joint in chain),
             p_pelvis_hip=readonly(hip),
@@ -132,6 +137,7 @@ class RobotModel:
             thigh=float(np.linalg.norm(thigh)),
             shank=float(np.linalg.norm(shank)),
             knee_offset=float(np.arctan2(thigh[0], thigh[2]) - np.arctan2(shank[0], shank[2])),
+            mass_at_ankle=float(sum(shares)),
         )
 
 

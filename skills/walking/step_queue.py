@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -20,10 +21,10 @@ def accepted_steps(steps: Sequence[Footstep], newest_id: int | None, last_side: 
     Raises:
         ValueError: where sequence ids do not increase, the feet do not take turns, or a step cannot be made.
     """
-    for before, step in zip(steps, steps[1:], strict=False):
+    for before, step in pairwise(steps):
         if step.sequence_id <= before.sequence_id:
             raise ValueError(
-                f"step {step.sequence_id} comes after step {before.sequence_id}: sequence ids must increase along a plan"
+                f"step {step.sequence_id} comes after step {before.sequence_id}: sequence ids must increase"
             )
     kept = tuple(step for step in steps if newest_id is None or step.sequence_id > newest_id)
     for step in kept:

@@ -9,11 +9,11 @@ then travels, or travels and then sinks; it leaves and meets the ground along it
 from __future__ import annotations
 
 import numpy as np
-import pinocchio as pin
+import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from skills.footsteps.footstep import Footstep
 from skills.geometry.pose import Array, Pose, rotation_z, wrap_angle
-from skills.walking.uniform_spline import UniformSpline, minimum_jerk
+from skills.walking.uniform_spline import UniformSpline, minimum_jerk, minimum_jerk_at
 from skills.walking.walking_parameters import WalkingParameters
 
 # A metre up counts as this many metres of travel: it gives upright parts of the polyline a place on the way.
@@ -55,9 +55,9 @@ class SwingTrajectory:
 
     def _rotation(self, u: float) -> Array:
         level, aligned = self._parameters.swing_level, self._parameters.swing_aligned
-        yaw = self._yaw + self._turn * float(minimum_jerk(np.float64(u / aligned)))
-        leaving = 1.0 - float(minimum_jerk(np.float64(u / level)))
-        arriving = float(minimum_jerk(np.float64((u - level) / (aligned - level))))
+        yaw = self._yaw + self._turn * minimum_jerk_at(u / aligned)
+        leaving = 1.0 - minimum_jerk_at(u / level)
+        arriving = minimum_jerk_at((u - level) / (aligned - level))
         return rotation_z(yaw) @ pin.exp3(leaving * self._start_tilt + arriving * self._end_tilt)
 
 

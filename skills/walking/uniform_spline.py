@@ -61,6 +61,12 @@ def minimum_jerk(x: Array) -> Array:
     return x * x * x * (10.0 + x * (6.0 * x - 15.0))
 
 
+def minimum_jerk_at(x: float) -> float:
+    """`minimum_jerk` at one place."""
+    x = min(max(x, 0.0), 1.0)
+    return x * x * x * (10.0 + x * (6.0 * x - 15.0))
+
+
 def controls_of_motion(value: Array, velocity: Array, acceleration: Array, spacing: float) -> Array:
     """The three control points with which a spline starts in a given motion, (3, D)."""
     middle = value - acceleration * spacing**2 / 6.0

@@ -65,6 +65,7 @@ class WalkingParameters:
     swing_level: float = parameter(0.5, unit="1", meaning="share of the swing when the sole is level", minimum=0.1)
     swing_aligned: float = parameter(0.9, unit="1", meaning="share of the swing when it has the foothold's tilt")
 
+    knee_bend: float = parameter(1.0, unit="rad", meaning="knee angle that standing is solved from", minimum=0.2)
     pelvis_pitch: float = parameter(0.03, unit="rad", meaning="forward lean of the pelvis", minimum=-0.5, maximum=0.5)
     shoulder_yaw: float = parameter(-0.3, unit="rad", meaning="posture of the left arm, mirrored on the right")
     shoulder_roll: float = parameter(-1.2, unit="rad", meaning="posture of the left arm, mirrored on the right")
