@@ -8,6 +8,8 @@ from other kernels.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -143,7 +145,8 @@ def convex_parts(polygon: Array, tolerance: float, holes: tuple[Array, ...] = ()
     for hole in sorted(holes, key=lambda hole: -float(np.max(hole[:, 0]))):
         polygon = _bridge(polygon, hole)
     vertices, ends = _decompose(np.ascontiguousarray(polygon, dtype=np.float64), tolerance)
-    return tuple(np.split(vertices, ends[:-1]))
+    starts = [0, *ends.tolist()]
+    return tuple(vertices[a:b] for a, b in pairwise(starts))
 
 
 def _bridge(polygon: Array, hole: Array) -> Array:

@@ -7,6 +7,7 @@ Every step is deterministic and runs on one core.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -56,6 +57,7 @@ class RegionExtraction:
     """Everything that one extraction found out, for people who look into it.
 
     Attributes:
+        image: what was looked at.
         regions: the result.
         labels: flat piece of each cell of the image, (rows, columns) int32; -1 for none.
         cell_size: edge of a cell [px].
@@ -63,6 +65,7 @@ class RegionExtraction:
         rejected: flat pieces that became no region.
     """
 
+    image: DepthImage
     regions: PlanarRegions
     labels: Labels
     cell_size: int
@@ -96,7 +99,7 @@ def examine_regions(
     cell_size = patches.size // 2
     regions, region_labels, rejected = _regions_of(image, fine, bend, cell_size, parameters)
     found = PlanarRegions(regions, image.time, image.frame_id)
-    return RegionExtraction(found, fine.labels, cell_size, region_labels, rejected)
+    return RegionExtraction(image, found, fine.labels, cell_size, region_labels, rejected)
 
 
 def _capsules_in_camera(body: tuple[Capsule, ...], T_world_camera: Pose) -> Array:
@@ -112,70 +115,88 @@ def _regions_of(
     regions: list[PlanarRegion] = []
     region_labels: list[int] = []
     rejected: list[RejectedRegion] = []
-    outlines = _Outlines.of(image, fine, cell_size)
-    for label in range(len(fine.planes)):
-        R_world_region = _facing_up(fine.planes[label], image.T_world_camera)
-        loops = [k for k, owner in enumerate(outlines.owners) if owner == label]
-        flat = [outlines.world[k] @ R_world_region[:, :2] for k in loops]
-        areas = [float(signed_area(loop)) for loop in flat]
-        for k, loop, area in zip(loops, flat, areas, strict=True):
-            if area <= 0.0:
-                continue
-            reason = _reason_against(area, R_world_region, outlines.depth[k], bend[label], parameters)
-            if reason:
-                rejected.append(RejectedRegion(label, reason, outlines.image[k]))
-                continue
-            holes = [h for h, a in zip(flat, areas, strict=True) if a < -parameters.hole_area_min and _within(h, loop)]
-            origin = float(np.mean(outlines.world[k] @ R_world_region[:, 2])), loop.mean(axis=0)
-            p = R_world_region @ np.array((*origin[1], origin[0]))
-            shapes = [simplify(shape - origin[1], parameters.outline_tolerance) for shape in (loop, *holes)]
-            region = _region(
-                Pose(R_world_region, p), shapes[0], tuple(s for s in shapes[1:] if len(s) > 2), image.time,
-                float(fine.sigma[label]), parameters,
-            )  # fmt: skip
-            regions.append(region)
-            region_labels.append(label)
+    R_world_regions = _frames(fine.planes, image.T_world_camera)
+    outlines = _back_project(trace_outlines(fine.labels), image, fine.planes, R_world_regions, cell_size)
+    holes = [outline for outline in outlines if outline.area < -parameters.hole_area_min]
+    for outline in outlines:
+        if outline.area <= 0.0:
+            continue
+        label, R = outline.label, R_world_regions[outline.label]
+        reason = _reason_against(outline.area, R, outline.depth, bend[label], parameters)
+        if reason:
+            rejected.append(RejectedRegion(label, reason, outline.points_image))
+            continue
+        inside = [hole.points for hole in holes if hole.label == label and _within(hole.points, outline.points)]
+        x, y, z = *outline.points.mean(axis=0), outline.height
+        hull, *cut_out = (
+            simplify(points - (x, y), parameters.outline_tolerance) for points in (outline.points, *inside)
+        )
+        cut_out = tuple(hole for hole in cut_out if len(hole) > 2)
+        parts = convex_parts(hull, parameters.convex_tolerance, cut_out)
+        area = float(signed_area(hull)) + sum(float(signed_area(hole)) for hole in cut_out)
+        T_world_region = Pose(R, R @ np.array((x, y, z)))
+        regions.append(PlanarRegion(T_world_region, hull, parts, area, image.time, cut_out, float(fine.sigma[label])))
+        region_labels.append(label)
     return tuple(regions), tuple(region_labels), tuple(rejected)
 
 
 @dataclass(frozen=True, slots=True)
-class _Outlines:
-    """All outlines of an image: whose they are, in pixels, in the world, and the mean depth of each."""
+class _Outline:
+    """A loop around a flat piece or, clockwise, around a hole in it.
 
-    owners: list[int]
-    image: list[Array]
-    world: list[Array]
-    depth: list[float]
+    `points` are x, y and `height` is the z that they share, along the axes of the region from the world's origin.
+    """
 
-    @classmethod
-    def of(cls, image: DepthImage, fine: Segmentation, cell_size: int) -> _Outlines:
-        camera = image.camera
-        traced = [(k, loop) for k, loop in trace_outlines(fine.labels) if len(loop) >= 8]
-        if not traced:
-            return cls([], [], [], [])
-        owners = [k for k, _ in traced]
-        sizes = [len(loop) for _, loop in traced]
-        uv = np.concatenate([loop for _, loop in traced]) * cell_size - 0.5
-        rays = np.column_stack(((uv - (camera.cx, camera.cy)) / (camera.fx, camera.fy), np.ones(len(uv))))
-        planes = np.repeat(fine.planes[owners], sizes, axis=0)
-        depth = 1.0 / np.maximum(np.sum(rays * planes, axis=1), 1.0 / camera.far)
-        world = image.T_world_camera @ (rays * depth[:, None])
-        cuts = np.cumsum(sizes)[:-1]
-        means = np.add.reduceat(depth, np.concatenate(([0], cuts))) / sizes
-        return cls(owners, np.split(uv, cuts), np.split(world, cuts), means.tolist())
+    label: int
+    points_image: Array
+    points: Array
+    height: float
+    area: float
+    depth: float
 
 
-def _facing_up(plane: Array, T_world_camera: Pose) -> Array:
-    """R_world_region with z towards the camera's side of the plane and x along the world's x as far as it can be."""
-    normal = T_world_camera.R @ (-plane / np.linalg.norm(plane))
-    heading = np.array((1.0, 0.0, 0.0)) if abs(normal[0]) < 0.9 else np.array((0.0, 1.0, 0.0))
-    y = np.cross(normal, heading)
-    y /= np.linalg.norm(y)
-    return np.column_stack((np.cross(y, normal), y, normal))
+def _back_project(
+    loops: list[tuple[int, Array]], image: DepthImage, planes: Array, R_world_regions: Array, cell_size: int
+) -> list[_Outline]:
+    """Outlines on their planes, all in one go; loops around single cells are left out."""
+    loops = [(label, loop) for label, loop in loops if len(loop) > 4]
+    if not loops:
+        return []
+    camera = image.camera
+    sizes = np.array([len(loop) for _, loop in loops])
+    ends = np.cumsum(sizes)
+    starts = ends - sizes
+    labels = np.repeat([label for label, _ in loops], sizes)
+    uv = np.concatenate([loop for _, loop in loops]) * cell_size - 0.5
+    rays = np.column_stack(((uv - (camera.cx, camera.cy)) / (camera.fx, camera.fy), np.ones(len(uv))))
+    depth = 1.0 / np.maximum(np.einsum("ni,ni->n", rays, planes[labels]), 1.0 / camera.far)
+    points = np.einsum("ni,nij->nj", image.T_world_camera @ (rays * depth[:, None]), R_world_regions[labels])
+    following = np.arange(1, len(uv) + 1)
+    following[ends - 1] = starts
+    turns = points[:, 0] * points[following, 1] - points[following, 0] * points[:, 1]
+    areas = 0.5 * np.add.reduceat(turns, starts)
+    depths = np.add.reduceat(depth, starts) / sizes
+    heights = np.add.reduceat(points[:, 2], starts) / sizes
+    return [
+        _Outline(label, uv[a:b], points[a:b, :2], height, area, mean_depth)
+        for (label, _), a, b, height, area, mean_depth in zip(
+            loops, starts.tolist(), ends.tolist(), heights.tolist(), areas.tolist(), depths.tolist(), strict=True
+        )
+    ]
+
+
+def _frames(planes: Array, T_world_camera: Pose) -> Array:
+    """R_world_region of each plane, (R, 3, 3): z towards the camera's side, x along the world's x as far as it can."""
+    normals = -(planes @ T_world_camera.R.T) / np.linalg.norm(planes, axis=1, keepdims=True)
+    nx, ny, nz = normals.T
+    zero = np.zeros(len(planes))
+    y = np.where(np.abs(nx) < 0.9, np.array((zero, nz, -ny)), np.array((-nz, zero, nx))).T
+    y /= np.linalg.norm(y, axis=1, keepdims=True)
+    return np.stack((np.cross(y, normals), y, normals), axis=2)
 
 
 def _reason_against(area: float, R: Array, depth: float, bend: float, parameters: RegionParameters) -> str:
-    slope = np.arccos(np.clip(R[2, 2], -1.0, 1.0))
+    slope = math.acos(min(max(R[2, 2], -1.0), 1.0))
     if area < parameters.area_min:
         return f"area {area:.4f} m^2, limit {parameters.area_min:g} m^2"
     if slope > parameters.slope_max:
@@ -189,11 +210,3 @@ def _reason_against(area: float, R: Array, depth: float, bend: float, parameters
 
 def _within(hole: Array, loop: Array) -> bool:
     return bool(np.all(hole.min(axis=0) >= loop.min(axis=0)) and np.all(hole.max(axis=0) <= loop.max(axis=0)))
-
-
-def _region(
-    T_world_region: Pose, hull: Array, holes: tuple[Array, ...], time: float, sigma: float, parameters: RegionParameters
-) -> PlanarRegion:
-    area = float(signed_area(hull)) + sum(float(signed_area(hole)) for hole in holes)
-    parts = convex_parts(hull, parameters.convex_tolerance, holes)
-    return PlanarRegion(T_world_region, hull, parts, area, time, holes, sigma)

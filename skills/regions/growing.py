@@ -2,7 +2,8 @@
 
 A patch joins where it links to a neighbour in the region (normals and offsets both ways) and also agrees with the plane
 of the whole region, which is fitted anew as it grows. The second test is what keeps a chain of small differences from
-joining blocks that touch. Grown regions merge where both fit their common plane.
+joining blocks that touch. Patches that are too noisy to join by their own normal then fill in by offset alone, and
+regions merge where both fit their common plane.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from skills.geometry.pose import Array
 from skills.kernels import kernel
 from skills.regions.parameters import RegionParameters
-from skills.regions.patches import SUMS, Patches, cosine, fit_plane, off_plane
+from skills.regions.patches import SUMS, Patches, cosine, fit_plane, misfit, off_plane
 
 Labels = NDArray[np.int32]
 
@@ -46,7 +47,9 @@ def grow_regions(patches: Patches, parameters: RegionParameters) -> Segmentation
     link = (np.cos(parameters.link_angle), parameters.link_offset)
     grow = (np.cos(parameters.grow_angle), parameters.grow_offset)
     count = _grow(patches.sums, patches.planes, order, *link, *grow, parameters.patches_min, labels, sums, planes)
-    parents = _merge(labels, count, np.cos(parameters.merge_angle), parameters.merge_offset, sums, planes)
+    pixels = patches.size**2
+    _fill(patches.sums, planes, parameters.fill_offset, 0.5 * pixels, labels)
+    parents = _merge(labels, count, parameters.merge_offset, parameters.patches_min * pixels, sums, planes)
     roots, renumbered = np.unique(parents, return_inverse=True)
     lookup = np.append(renumbered, -1).astype(np.int32)
     sigma = np.array([fit_plane(sums[root], planes[root]) for root in roots])
@@ -133,8 +136,35 @@ def _grow(
 
 
 @kernel
+def _fill(patch_sums: Array, planes: Array, offset: float, filled_min: float, labels: Labels) -> None:
+    """Give patches without a region that of a neighbour whose plane they lie in, outwards from the regions."""
+    rows, columns = labels.shape
+    queue = np.empty(rows * columns, np.int64)
+    tail = 0
+    for row in range(rows):
+        for column in range(columns):
+            if labels[row, column] >= 0:
+                queue[tail] = row * columns + column
+                tail += 1
+    head = 0
+    while head < tail:
+        row, column = queue[head] // columns, queue[head] % columns
+        head += 1
+        label = labels[row, column]
+        for side in range(4):
+            i = row + (side == 0) - (side == 1)
+            j = column + (side == 2) - (side == 3)
+            if i < 0 or j < 0 or i >= rows or j >= columns or labels[i, j] >= 0:
+                continue
+            if patch_sums[i, j, 0] >= filled_min and abs(off_plane(patch_sums[i, j], planes[label])) <= offset:
+                labels[i, j] = label
+                queue[tail] = i * columns + j
+                tail += 1
+
+
+@kernel
 def _merge(
-    labels: Labels, count: int, merge_cosine: float, merge_offset: float, sums: Array, planes: Array
+    labels: Labels, count: int, merge_offset: float, smallest: float, sums: Array, planes: Array
 ) -> NDArray[np.int32]:
     """Join regions at most two patches apart until none fits another; which region each one has become."""
     rows, columns = labels.shape
@@ -155,17 +185,15 @@ def _merge(
     while merged:
         merged = False
         for p in range(count):
-            for q in range(count):
-                if p == q or parents[p] != p or parents[q] != q or not (touching[p, q] or touching[q, p]):
-                    continue
-                if cosine(planes[p], planes[q]) < merge_cosine:
+            for q in range(p + 1, count):
+                if parents[p] != p or parents[q] != q or not (touching[p, q] or touching[q, p]):
                     continue
                 for k in range(10):
                     union[k] = sums[p, k] + sums[q, k]
                 fit_plane(union, plane)
-                if min(cosine(plane, planes[p]), cosine(plane, planes[q])) < merge_cosine:
-                    continue
-                if max(abs(off_plane(sums[p], planes[q])), abs(off_plane(sums[q], planes[p]))) > merge_offset:
+                # The plane of a small region is less certain, and more of its misfit is noise.
+                limit = merge_offset * (1.0 + smallest / min(sums[p, 0], sums[q, 0]))
+                if max(misfit(sums[p], planes[p], plane), misfit(sums[q], planes[q], plane)) > limit:
                     continue
                 sums[p] = union
                 planes[p] = plane

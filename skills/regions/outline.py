@@ -25,7 +25,8 @@ def trace_outlines(labels: Labels) -> list[tuple[int, Array]]:
         (region, loop) pairs; a loop is (N, 2), (column, row) where integers are corners of cells.
     """
     points, ends, owners = _trace(labels)
-    return [(int(owner), loop) for owner, loop in zip(owners, np.split(points, ends[:-1]), strict=True)]
+    starts = [0, *ends.tolist()]
+    return [(owner, points[starts[k] : starts[k + 1]]) for k, owner in enumerate(owners.tolist())]
 
 
 @kernel

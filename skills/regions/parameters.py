@@ -23,10 +23,10 @@ class RegionParameters:
     )
     depth_max: float = parameter(4.0, unit="m", minimum=0.2, maximum=20.0, meaning="deeper pixels are ignored")
     link_angle: float = parameter(
-        np.deg2rad(5.0), unit="rad", minimum=0.001, maximum=1.0, meaning="normals of neighbouring patches that link"
+        np.deg2rad(8.0), unit="rad", minimum=0.001, maximum=1.0, meaning="normals of neighbouring patches that link"
     )
     link_offset: float = parameter(
-        0.004, unit="m", minimum=0.0005, maximum=0.1, meaning="offset of neighbouring patches from each other's plane"
+        0.006, unit="m", minimum=0.0005, maximum=0.1, meaning="offset of neighbouring patches from each other's plane"
     )
     grow_angle: float = parameter(
         np.deg2rad(9.0), unit="rad", minimum=0.001, maximum=1.0, meaning="normal of a patch and of its region"
@@ -34,11 +34,19 @@ class RegionParameters:
     grow_offset: float = parameter(
         0.005, unit="m", minimum=0.0005, maximum=0.1, meaning="offset of a patch from the plane of its region"
     )
-    merge_angle: float = parameter(
-        np.deg2rad(2.5), unit="rad", minimum=0.001, maximum=1.0, meaning="normals of neighbouring regions that merge"
+    fill_offset: float = parameter(
+        0.004,
+        unit="m",
+        minimum=0.0005,
+        maximum=0.1,
+        meaning="offset at which a patch joins without regard to its normal",
     )
     merge_offset: float = parameter(
-        0.006, unit="m", minimum=0.0005, maximum=0.1, meaning="offset of neighbouring regions that merge"
+        0.0018,
+        unit="m",
+        minimum=0.0005,
+        maximum=0.1,
+        meaning="mean distance of regions that merge from their common plane",
     )
     patch_sigma_max: float = parameter(
         0.012, unit="m", minimum=0.001, maximum=0.1, meaning="spread of a flat patch's pixels about its plane"
@@ -81,10 +89,14 @@ class MemoryParameters:
     same_height: float = parameter(
         0.02, unit="m", minimum=0.001, maximum=0.5, meaning="old ground further from what is seen now has changed"
     )
+    changed_share: float = parameter(
+        0.2, unit="1", minimum=0.0, maximum=1.0, meaning="least share of an old region to be seen before it is judged"
+    )
     covered_share: float = parameter(
         0.9, unit="1", minimum=0.0, maximum=1.0, meaning="an old region covered this far by newer ones is dropped"
     )
     regions_max: int = parameter(150, unit="1", minimum=1, maximum=10000, meaning="the oldest beyond this are dropped")
+    cell: float = parameter(0.025, unit="m", minimum=0.005, maximum=0.1, meaning="edge of the cells for comparing")
     support_scale: float = parameter(
         1.5, unit="1", minimum=1.0, maximum=3.0, meaning="assumed ground under an unseen sole, in soles"
     )

@@ -210,3 +210,13 @@ def cosine(p: Array, q: Array) -> float:
     """Cosine of the angle between the normals of two planes."""
     pq = p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
     return pq / np.sqrt((p[0] ** 2 + p[1] ** 2 + p[2] ** 2) * (q[0] ** 2 + q[1] ** 2 + q[2] ** 2))
+
+
+@kernel
+def misfit(s: Array, own: Array, other: Array) -> float:
+    """Root mean square distance, over the pixels of sums, between their own plane and another [m]."""
+    n = s[0]
+    da, db, dc = other[0] - own[0], other[1] - own[1], other[2] - own[2]
+    square = da * da * s[4] + db * db * s[6] + dc * dc * n + 2.0 * (da * db * s[5] + da * dc * s[1] + db * dc * s[2])
+    length = np.sqrt(own[0] ** 2 + own[1] ** 2 + own[2] ** 2)
+    return np.sqrt(max(square, 0.0) / n) * n / (s[3] * length)

@@ -110,7 +110,7 @@ def _label_cells(
 
 @kernel
 def _majority(labels: Labels) -> Labels:
-    """A label that few of its 3 x 3 cells share gives way to one that five of them have: specks go, edges straighten."""
+    """A label that few of its 3 x 3 cells share gives way to one that five of them have: specks go, edges settle."""
     rows, columns = labels.shape
     smooth = labels.copy()
     for row in range(1, rows - 1):
