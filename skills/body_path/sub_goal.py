@@ -12,7 +12,7 @@ import numpy as np
 
 from skills.body_path.body_path import BodyPath
 from skills.footsteps.footstep import Stance
-from skills.geometry.pose import Array, wrap_angle
+from skills.geometry.pose import Array, readonly, wrap_angle
 from skills.parameters import parameter, parameters
 
 
@@ -37,12 +37,17 @@ class SubGoal:
         start_arc_length: where on it the imminent stance is [m].
         arc_length: where the sub-goal is [m].
         search_arc_length: how far the search for steps looks, at or past the sub-goal [m].
+        searched_world: the path from the stance to there, (N >= 2, 4) rows of x, y [m], yaw [rad], arc length [m].
     """
 
     path: BodyPath
     start_arc_length: float
     arc_length: float
     search_arc_length: float
+    searched_world: Array
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "searched_world", readonly(self.searched_world, (None, 4)))
 
     @property
     def pose_world(self) -> Array:
@@ -60,7 +65,9 @@ def sub_goal(path: BodyPath, imminent_stance: Stance, parameters: SubGoalParamet
     start = path.project(imminent_stance.mid_feet)
     ahead = parameters.ahead_in_curve if _turn(path, start, parameters) > parameters.tight_turn else parameters.ahead
     arc_length = min(start + ahead, path.length)
-    return SubGoal(path, start, arc_length, min(arc_length + parameters.search_beyond, path.length))
+    end = min(arc_length + parameters.search_beyond, path.length)
+    searched = np.array([(*path.at(s), s) for s in _stations(path, start, end)])
+    return SubGoal(path, start, arc_length, end, searched)
 
 
 def goal_reached(path: BodyPath, imminent_stance: Stance, parameters: SubGoalParameters) -> bool:
@@ -73,7 +80,10 @@ def goal_reached(path: BodyPath, imminent_stance: Stance, parameters: SubGoalPar
 
 def _turn(path: BodyPath, start: float, parameters: SubGoalParameters) -> float:
     """How much the path turns, in all, from the start to `ahead` [rad]."""
-    end = start + parameters.ahead
-    inner = [s for s in path.arc_lengths if start < s < end]
-    headings = [path.at(s)[2] for s in (start, *inner, end)]
+    headings = [path.at(s)[2] for s in _stations(path, start, min(start + parameters.ahead, path.length))]
     return sum(abs(wrap_angle(after - before)) for before, after in pairwise(headings))
+
+
+def _stations(path: BodyPath, start: float, end: float) -> list[float]:
+    """Arc lengths of the start, the waypoints between, and the end."""
+    return [start, *(float(s) for s in path.arc_lengths if start < s < end), end]

@@ -74,6 +74,7 @@ class FootstepParameters:
     max_expansions: int = parameter(6000, unit="1", meaning="nodes a search may expand", minimum=1)
     minimum_steps: int = parameter(3, unit="1", meaning="fewest steps to a sub-goal", minimum=1, maximum=10)
     window_margin: float = parameter(0.7, unit="m", meaning="ground searched on all sides of the path", minimum=0.3)
+    heading_margin: float = parameter(0.7, unit="rad", meaning="headings searched beyond the path's", minimum=0.2)
     along_tolerance: float = parameter(0.10, unit="m", meaning="sub-goal tolerance along the path", minimum=0.01)
     across_tolerance: float = parameter(0.29, unit="m", meaning="sub-goal tolerance across the path", minimum=0.01)
     heading_tolerance: float = parameter(0.35, unit="rad", meaning="sub-goal tolerance of the heading", minimum=0.0)

@@ -16,23 +16,26 @@ from numpy.typing import NDArray
 from skills.footsteps.footstep import Footstep, FootstepPlan, PlanOutcome, Side, Stance
 from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
 from skills.footsteps.footstep_search import (
+    EDGE,
+    GROUND,
+    NODE,
     OUT_OF_BUDGET,
     REACHED,
     REASONS,
-    SearchGoal,
-    SearchSpace,
-    StepLimits,
+    SEARCH_GOAL,
+    STEP_LIMITS,
     search_footsteps,
 )
 from skills.footsteps.swing_clearance import swing_clearance
-from skills.footsteps.terrain import RegionTerrain, Terrain, region_terrain, slopes, snap_limits, sole_on_slope
-from skills.geometry.pose import Array, Pose
+from skills.footsteps.terrain import RegionTerrain, Terrain, foothold_rules, pack, region_terrain, slopes, sole_on_slope
+from skills.geometry.pose import Array, Pose, wrap_angle
 from skills.regions.planar_region import PlanarRegions
 
 if TYPE_CHECKING:
     from skills.body_path.sub_goal import SubGoal
 
 _SAME_PLACE = 0.03
+_OPEN_LIST = 16384
 
 
 def terrain_ahead(
@@ -107,104 +110,89 @@ def plan_footsteps(
         PARTIAL where the search ended before but its best steps make progress, BLOCKED without steps where not.
     """
     budget = parameters.max_expansions if max_expansions is None else max_expansions
-    search = _Search.prepare(terrain, imminent_stance, first_side, goal, parameters, reference)
+    lattice = _Lattice.around(imminent_stance, first_side, goal, parameters)
+    corner = terrain.corner_world
+    stances = int(np.prod(lattice.shape))
+    nodes, grounds = np.zeros(2 * stances + 1, dtype=NODE), np.zeros(stances, dtype=GROUND)
     rejections = np.zeros(len(REASONS), dtype=np.int64)
-    ended, best, expansions, to_go_before, to_go = search_footsteps(
+    ended, last, before_last, cost, expansions, saved = search_footsteps(
         terrain.cells,
         terrain.planes,
         terrain.resolution,
-        snap_limits(parameters),
+        *foothold_rules(parameters),
         _step_limits(parameters),
-        search.goal,
-        search.feet,
+        np.array([(goal.search_arc_length, goal.final)], dtype=SEARCH_GOAL),
+        goal.searched_world - (*corner, 0.0, 0.0),
+        _reference_places(reference, imminent_stance, first_side, parameters.reference_steps) - corner,
+        np.array([_foot(imminent_stance, side, corner) for side in (first_side.opposite, first_side)]),
+        np.array((*lattice.shape, *lattice.start)),
         budget,
-        search.space,
+        nodes,
+        grounds,
+        np.empty(_OPEN_LIST, dtype=EDGE),
         rejections,
     )
     counted = _counted(rejections)
-    progress = (to_go_before - to_go) / parameters.step_cost * parameters.reach
-    if ended == REACHED:
-        outcome = PlanOutcome.GOAL_REACHED if goal.final else PlanOutcome.ENOUGH_STEPS
-        reason = ""
-    elif progress >= parameters.minimum_progress:
-        outcome = PlanOutcome.PARTIAL
-        reason = _why(ended, budget, counted)
-    else:
-        outcome = PlanOutcome.BLOCKED
-        reason = f"no steps get on: {_why(ended, budget, counted)}"
-        return FootstepPlan(plan_id, terrain.frame_id, outcome, reason, (), 0.0, expansions, counted)
-    steps = _steps(search, best, terrain, imminent_stance, first_side, parameters, first_sequence_id)
-    cost = float(search.space.cost[best])
-    return FootstepPlan(plan_id, terrain.frame_id, outcome, reason, steps, cost, expansions, counted)
+    reason = "" if ended == REACHED else _why(ended, budget, counted)
+    outcome = _outcome(ended, saved / parameters.step_cost * parameters.reach, goal, parameters)
+    if outcome is PlanOutcome.BLOCKED:
+        return FootstepPlan(plan_id, terrain.frame_id, outcome, f"no way on: {reason}", (), 0.0, expansions, counted)
+    way = _way(nodes["parent"], last, before_last)
+    landings = [lattice.pose(node, grounds) for node in way]
+    shares = [float(grounds[node % stances]["share"]) for node in way]
+    steps = _steps(landings, shares, terrain, imminent_stance, first_side, parameters, first_sequence_id)
+    return FootstepPlan(plan_id, terrain.frame_id, outcome, reason, steps, float(cost), expansions, counted)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Search:
-    """What one search needs: where the lattice lies, its memory, the feet and the goal from the raster's corner."""
+class _Lattice:
+    """Where the nodes of a search lie.
 
+    Attributes:
+        shape: number of headings, ny, nx.
+        start: heading, iy and ix of the stance foot.
+        anchor_world: where the stance foot is, (3,) [m].
+        yaw: its heading [rad].
+        spacing: distance of two nodes [m].
+        turn: angle between two headings [rad].
+    """
+
+    shape: tuple[int, int, int]
+    start: tuple[int, int, int]
     anchor_world: Array
     yaw: float
-    feet: Array
-    goal: SearchGoal
-    space: SearchSpace
+    spacing: float
+    turn: float
 
     @classmethod
-    def prepare(
-        cls,
-        terrain: Terrain,
-        stance: Stance,
-        first_side: Side,
-        goal: SubGoal,
-        parameters: FootstepParameters,
-        reference: FootstepPlan | None,
-    ) -> _Search:
-        corner = terrain.corner_world
+    def around(cls, stance: Stance, first_side: Side, goal: SubGoal, parameters: FootstepParameters) -> _Lattice:
+        """The lattice through the stance foot that covers the ground and the headings to a sub-goal."""
         anchor = stance.sole(first_side.opposite)
         low, high = _window(stance, goal, parameters)
-        before = np.floor((anchor.p[:2] - low) / parameters.lattice).astype(np.int64)
-        after = np.floor((high - anchor.p[:2]) / parameters.lattice).astype(np.int64)
-        feet = np.array([_foot(stance, side, corner) for side in (first_side.opposite, first_side)])
-        path = _path_piece(goal, corner)
-        places = _reference_places(reference, stance, first_side, parameters.reference_steps) - corner
-        return cls(
-            anchor.p,
-            anchor.yaw,
-            feet,
-            SearchGoal(path, goal.search_arc_length, float(goal.final), places),
-            _space((before + after + 1)[::-1], before[::-1].copy(), parameters.headings),
-        )
+        x_before, y_before = (int(n) for n in (anchor.p[:2] - low) / parameters.lattice)
+        x_after, y_after = (int(n) for n in (high - anchor.p[:2]) / parameters.lattice)
+        turn = 2 * np.pi / parameters.headings
+        most = max(abs(wrap_angle(yaw - anchor.yaw)) for yaw in goal.searched_world[:, 2])
+        headings = min(2 * int(np.ceil((most + parameters.heading_margin) / turn)) + 1, parameters.headings)
+        shape = (headings, y_before + y_after + 1, x_before + x_after + 1)
+        start = (headings // 2, y_before, x_before)
+        return cls(shape, start, anchor.p, anchor.yaw, parameters.lattice, turn)
 
-    def pose(self, node: int, parameters: FootstepParameters) -> Pose:
+    def pose(self, node: int, grounds: NDArray[np.void]) -> Pose:
         """Sole frame of a node."""
-        ny, nx, headings = (int(n) for n in self.space.shape)
-        snap = node % (ny * nx * headings)
-        heading, ix, iy = snap % headings, snap // headings % nx, snap // headings // nx
-        x = self.anchor_world[0] + (ix - self.space.start[1]) * parameters.lattice
-        y = self.anchor_world[1] + (iy - self.space.start[0]) * parameters.lattice
-        turn = heading if 2 * heading < headings else heading - headings
-        z, a, b, _ = self.space.ground[snap]
-        return sole_on_slope(x, y, z, self.yaw + turn * 2 * np.pi / headings, a, b)
-
-    def share(self, node: int) -> float:
-        """Supported share of the sole at a node."""
-        return float(self.space.ground[node % (len(self.space.cost) // 2), 3])
+        _, ny, nx = self.shape
+        snap = node % len(grounds)
+        heading, iy, ix = snap // (ny * nx), snap // nx % ny, snap % nx
+        x = self.anchor_world[0] + (ix - self.start[2]) * self.spacing
+        y = self.anchor_world[1] + (iy - self.start[1]) * self.spacing
+        z, a, b = (float(grounds[snap][name]) for name in ("z", "a", "b"))
+        return sole_on_slope(x, y, z, self.yaw + (heading - self.start[0]) * self.turn, a, b)
 
 
 def _window(stance: Stance, goal: SubGoal, parameters: FootstepParameters) -> tuple[Array, Array]:
     """Corners of the ground that is searched."""
-    piece = _path_piece(goal, np.zeros(2))[:, :2]
-    points = np.vstack((piece, stance.T_world_left.p[:2], stance.T_world_right.p[:2]))
+    points = np.vstack((goal.searched_world[:, :2], stance.T_world_left.p[:2], stance.T_world_right.p[:2]))
     return points.min(axis=0) - parameters.window_margin, points.max(axis=0) + parameters.window_margin
-
-
-def _path_piece(goal: SubGoal, corner: Array) -> Array:
-    """The path from the stance to the end of the search: (N, 4) x, y from the corner, heading, arc length."""
-    arcs = goal.path.arc_lengths
-    inner = [s for s in arcs if goal.start_arc_length < s < goal.search_arc_length]
-    ends = [goal.start_arc_length, *inner, goal.search_arc_length]
-    piece = np.array([(*goal.path.at(s), s) for s in ends])
-    piece[:, :2] -= corner
-    return piece
 
 
 def _foot(stance: Stance, side: Side, corner: Array) -> tuple[float, ...]:
@@ -231,57 +219,55 @@ def _reference_places(reference: FootstepPlan | None, stance: Stance, first_side
     return places
 
 
-def _space(shape: NDArray[np.int64], start: NDArray[np.int64], headings: int) -> SearchSpace:
-    """Memory of a search; pages that it does not touch cost nothing."""
-    stances = int(shape[0] * shape[1]) * headings
-    return SearchSpace(
-        shape=np.array((shape[0], shape[1], headings), dtype=np.int64),
-        start=start,
-        status=np.zeros(2 * stances, dtype=np.uint8),
-        cost=np.empty(2 * stances),
-        parent=np.empty(2 * stances, dtype=np.int32),
-        depth=np.empty(2 * stances, dtype=np.int32),
-        snap=np.zeros(stances, dtype=np.uint8),
-        ground=np.empty((stances, 4)),
-    )
-
-
-def _step_limits(parameters: FootstepParameters) -> StepLimits:
+def _step_limits(parameters: FootstepParameters) -> NDArray[np.void]:
+    """Limits, costs and settings, as the search takes them: one `STEP_LIMITS`."""
+    turn = max(parameters.inward_yaw, parameters.outward_yaw)
     derived = {
         "half_length": 0.5 * parameters.sole_length,
         "half_width": 0.5 * parameters.sole_width,
-        "uphill_slope": np.tan(parameters.uphill_slope),
-        "turn_per_step": 0.5 * (parameters.inward_yaw + parameters.outward_yaw),
+        "uphill_tangent": np.tan(parameters.uphill_slope),
+        # The body beside a foot moves on by the reach, and a little more where the foot turns.
+        "stride": parameters.reach + 0.5 * parameters.ideal_width * turn,
+        "turn": turn,
+        "heading": 2 * np.pi / parameters.headings,
     }
-    values = {name: derived[name] if name in derived else getattr(parameters, name) for name in StepLimits._fields}
-    return StepLimits(**{name: float(value) for name, value in values.items()})
+    return pack(STEP_LIMITS, parameters, derived)
+
+
+def _outcome(ended: int, progress: float, goal: SubGoal, parameters: FootstepParameters) -> PlanOutcome:
+    if ended == REACHED:
+        return PlanOutcome.GOAL_REACHED if goal.final else PlanOutcome.ENOUGH_STEPS
+    return PlanOutcome.PARTIAL if progress >= parameters.minimum_progress else PlanOutcome.BLOCKED
+
+
+def _way(parents: NDArray[np.int64], last: int, before_last: int) -> list[int]:
+    """Nodes from the first step to the last; the stance foot's node, whose parent is past the end, is left out."""
+    way = [last, before_last]
+    while way[-1] < len(parents) - 1:
+        way.append(int(parents[way[-1]]))
+    return way[-3::-1]
 
 
 def _steps(
-    search: _Search,
-    last: int,
+    landings: list[Pose],
+    shares: list[float],
     terrain: Terrain,
     stance: Stance,
     first_side: Side,
     parameters: FootstepParameters,
     first_sequence_id: int,
 ) -> tuple[Footstep, ...]:
-    """The way to a node as steps, each with its foothold and its swing."""
-    nodes = [last]
-    while search.space.parent[nodes[-1]] >= 0:
-        nodes.append(int(search.space.parent[nodes[-1]]))
+    """Landings as steps, each with its foothold and its swing."""
     steps: list[Footstep] = []
     side = first_side
-    for i, node in enumerate(nodes[-2::-1]):
-        landing = search.pose(node, parameters)
-        whole = search.share(node) >= 1.0
+    for i, (landing, share) in enumerate(zip(landings, shares, strict=True)):
         swing = swing_clearance(terrain, stance.sole(side), landing, parameters)
         steps.append(
             Footstep(
                 sequence_id=first_sequence_id + i,
                 side=side,
                 T_world_sole=landing,
-                foothold_sole=whole_sole(parameters) if whole else terrain.foothold_polygon(landing, parameters),
+                foothold_sole=whole_sole(parameters) if share >= 1.0 else terrain.foothold_polygon(landing, parameters),
                 swing_duration=parameters.swing_duration,
                 transfer_duration=parameters.transfer_duration,
                 swing_height=swing.height,

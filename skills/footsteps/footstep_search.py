@@ -1,21 +1,24 @@
 """Weighted A* over a lattice of footholds (x, y, heading, side), on the ground of a raster of planes.
 
 The lattice is anchored at the stance foot, so a node's pose is exact and every limit is checked on the pose that is
-returned. Edges, limits and costs follow Griffin et al., "Footstep planning for autonomous walking over rough terrain"
-(2019); the search closes a node once, so with a consistent estimate of the cost to go its cost is at most
-`heuristic_weight` times the best on the lattice.
+returned. Limits and costs follow Griffin et al., "Footstep planning for autonomous walking over rough terrain" (2019).
+Snapping a sole is what costs time, so an edge whose foothold is not known yet enters the open list with the cost it
+would have on level ground and is snapped only when it comes first (Cohen et al., "Lazy weighted A*", 2014). A node is
+closed once; the cost is at most `heuristic_weight` times the best on the lattice.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from skills.footsteps.plane_raster import FOOTHOLD, SNAP_REASONS, UNSEEN, SnapLimits, snap_sole
+from skills.footsteps.plane_raster import FOOTHOLD, SNAP_REASONS, UNSEEN, snap_sole
 from skills.geometry.pose import Array
 from skills.kernels import kernel
+
+Records: TypeAlias = Any  # structured arrays, or one element of them
 
 REASONS = (
     *SNAP_REASONS,
@@ -31,86 +34,37 @@ REASONS = (
 _TOO_HIGH, _TOO_LOW, _FAR_UP, _FAR_DOWN, _UPHILL, _SWING_LONG, _SWING_HIGH, _OUTSIDE = range(
     len(SNAP_REASONS), len(REASONS)
 )
-_OPEN_LIST = 8192
 REACHED, EXHAUSTED, OUT_OF_BUDGET = range(3)
 
-
-class StepLimits(NamedTuple):
-    """Limits, costs and search settings, as floats for the kernels; see `FootstepParameters`."""
-
-    half_length: float
-    half_width: float
-    reach: float
-    reach_up: float
-    reach_up_height: float
-    reach_down: float
-    reach_down_height: float
-    back_reach: float
-    minimum_width: float
-    ideal_width: float
-    maximum_width: float
-    sole_gap: float
-    height_change: float
-    inward_yaw: float
-    outward_yaw: float
-    uphill_drop: float
-    uphill_slope: float  # tangent
-    swing_reach: float
-    swing_height_change: float
-    step_cost: float
-    height_cost: float
-    tilt_cost: float
-    yaw_cost: float
-    width_cost: float
-    path_cost: float
-    share_cost: float
-    reference_cost: float
-    lattice: float
-    turn_per_step: float
-    heuristic_weight: float
-    minimum_steps: float
-    along_tolerance: float
-    across_tolerance: float
-    heading_tolerance: float
-    goal_tolerance: float
-    goal_yaw_tolerance: float
-
-
-class SearchGoal(NamedTuple):
-    """Where to: progress along the path, or both feet at its end.
-
-    Attributes:
-        path: (N, 4) rows of x, y from the corner, heading, arc length.
-        arc_length: progress to reach.
-        final: 1 where the goal is the end of the path, 0 where progress along it is enough.
-        reference: (K, 2) places of the first steps in the plan before, NaN where there is none.
-    """
-
-    path: Array
-    arc_length: float
-    final: float
-    reference: Array
-
-
-class SearchSpace(NamedTuple):
-    """Nodes of the search, dense and filled lazily; a node is ((side * ny + iy) * nx + ix) * headings + heading.
-
-    Attributes:
-        shape: ny, nx, headings.
-        start: iy and ix of the stance foot.
-        status: 0 unseen, 1 open, 2 closed.
-        cost, parent, depth: best known way to a node.
-        snap, ground: outcome of the snap, and height, slopes, share (4,) by node without its side.
-    """
-
-    shape: NDArray[np.int64]
-    start: NDArray[np.int64]
-    status: NDArray[np.uint8]
-    cost: Array
-    parent: NDArray[np.int32]
-    depth: NDArray[np.int32]
-    snap: NDArray[np.uint8]
-    ground: Array
+# Fields are named after the parameters; the half sizes, uphill_tangent, heading (angle
+# between two), stride and turn (the most of a step) come from them.
+STEP_LIMITS = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            *("half_length", "half_width", "reach", "reach_up", "reach_up_height", "reach_down", "reach_down_height"),
+            *("back_reach", "minimum_width", "ideal_width", "maximum_width", "sole_gap", "height_change"),
+            *("inward_yaw", "outward_yaw", "uphill_drop", "uphill_tangent", "swing_reach", "swing_height_change"),
+            *("step_cost", "height_cost", "tilt_cost", "yaw_cost", "width_cost", "path_cost", "share_cost"),
+            *("reference_cost", "lattice", "heading", "stride", "turn", "heuristic_weight", "minimum_steps"),
+            *("along_tolerance", "across_tolerance", "heading_tolerance", "goal_tolerance", "goal_yaw_tolerance"),
+        )
+    ]
+)
+SEARCH_GOAL = np.dtype([("arc_length", np.float64), ("final", np.bool_)])
+# A foot on the lattice: cost of the way there, estimated cost to go, what being off the path costs, and the way back.
+NODE = np.dtype(
+    [
+        *((name, np.float64) for name in ("cost", "to_go", "off_path_cost")),
+        *((name, np.int64) for name in ("parent", "depth")),
+        *((name, np.uint8) for name in ("status", "arrived")),
+    ]
+)
+_JUDGED, _OPEN, _CLOSED = 1, 2, 3
+# What the ground is under a foot of either side: outcome of the snap, height, slopes, supported share.
+GROUND = np.dtype([*((name, np.float64) for name in ("z", "a", "b", "share")), ("outcome", np.uint8)])
+# An edge in the open list; its cost is negative as long as it is only estimated.
+EDGE = np.dtype([("estimate", np.float64), ("cost", np.float64), ("node", np.int64), ("parent", np.int64)])
 
 
 @kernel
@@ -118,174 +72,250 @@ def search_footsteps(
     cells: NDArray[np.int32],
     planes: Array,
     resolution: float,
-    snap_limits: SnapLimits,
-    limits: StepLimits,
-    goal: SearchGoal,
+    snap_limits: Records,
+    samples: Array,
+    step_limits: Records,
+    search_goal: Records,
+    path: Array,
+    reference: Array,
     feet: Array,
+    lattice: NDArray[np.int64],
     max_expansions: int,
-    space: SearchSpace,
+    nodes: Records,
+    grounds: Records,
+    open_list: Records,
     rejections: NDArray[np.int64],
-) -> tuple[int, int, int, float, float]:
+) -> tuple[int, int, int, float, int, float]:
     """Search from a stance.
+
+    A node is ((side * headings + heading) * ny + iy) * nx + ix; side 0 is left.
+    In this order a search, which uses few headings, touches little memory.
 
     Args:
         cells: raster of plane indices.
         planes: its planes.
         resolution: its cell size [m].
-        snap_limits: what a sole may stand on.
-        limits: limits, costs and settings of the search.
-        goal: where to.
+        snap_limits: one `SNAP_LIMITS`.
+        samples: where a sole feels the ground.
+        step_limits: one `STEP_LIMITS`.
+        search_goal: one `SEARCH_GOAL`.
+        path: (N, 4) rows of x, y from the corner, heading, arc length.
+        reference: (K, 2) places of the first steps in the plan before, NaN where there is none.
         feet: (2, 7) stance foot, then swing foot: x, y from the corner, z, heading, slopes a and b, side (+1 left).
+        lattice: headings, ny, nx, then heading, iy and ix of the stance foot.
         max_expansions: nodes that may be expanded.
-        space: memory of the search.
+        nodes: one `NODE` a node, zero.
+        grounds: one `GROUND` a node of one side, zero.
+        open_list: some `EDGE`s as first memory of the open list.
         rejections: counts by reason, added to.
 
     Returns:
-        Outcome, best node, expansions, estimated cost to go at the start and at the best node.
+        Outcome, last node, node before it, cost, expansions, progress by the estimated cost to go.
     """
-    ny, nx, headings = space.shape
-    root_side = 0 if feet[0, 6] > 0 else 1
-    root = ((root_side * ny + space.start[0]) * nx + space.start[1]) * headings
+    limits, goal = step_limits[0], search_goal[0]
+    headings, ny, nx = lattice[0], lattice[1], lattice[2]
     stances = ny * nx * headings
-    root_snap = root % stances
-    space.snap[root_snap] = FOOTHOLD
-    space.ground[root_snap, 0] = feet[0, 2]
-    space.ground[root_snap, 1] = feet[0, 4]
-    space.ground[root_snap, 2] = feet[0, 5]
-    space.ground[root_snap, 3] = 1.0
-    space.cost[root], space.parent[root], space.depth[root], space.status[root] = 0.0, -1, 0, 1
-    children = np.empty((2 * headings, _most_children(limits, headings), 4))
-    child_counts = np.full(2 * headings, -1)
-    found = np.zeros(5)
-    _progress(goal, limits, feet[0, 0], feet[0, 1], feet[0, 3], feet[0, 6], found)
-    start_to_go = found[3]
-    best, best_to_go = root, start_to_go
-    heap_cost, heap_node = np.empty(_OPEN_LIST), np.empty(_OPEN_LIST, np.int32)
-    heap_size = _push(heap_cost, heap_node, 0, limits.heuristic_weight * start_to_go, root)
+    root = (lattice[3] * ny + lattice[4]) * nx + lattice[5] + (0 if feet[0, 6] > 0 else stances)
+    ground = grounds[root % stances]
+    ground.outcome, ground.z, ground.a, ground.b, ground.share = FOOTHOLD, feet[0, 2], feet[0, 4], feet[0, 5], 1.0
+    trigonometry = np.empty((headings, 3))
+    for k in range(headings):
+        yaw = feet[0, 3] + (k - lattice[3]) * limits.heading
+        trigonometry[k, 0], trigonometry[k, 1], trigonometry[k, 2] = yaw, np.cos(yaw), np.sin(yaw)
+    # The node past the last stands for the swing foot, where it is now.
+    nodes[root].parent = 2 * stances
+    _judge(limits, goal, path, feet[0, 0], feet[0, 1], feet[0, 3], feet[0, 6], nodes[root])
+    _judge(limits, goal, path, feet[1, 0], feet[1, 1], feet[1, 3], feet[1, 6], nodes[2 * stances])
+    start_to_go, best = nodes[root].to_go, root
+    if goal.final and nodes[root].arrived and nodes[2 * stances].arrived:
+        return REACHED, root, 2 * stances, 0.0, 0, 0.0
+    nodes[root].status = _OPEN
+    children = np.empty((2 * headings, _most_children(limits), 3), np.int64)
+    counts = np.full(2 * headings, -1)
+    size = _push(open_list, 0, 0.0, 0.0, root, 2 * stances)
     expansions = 0
-    while heap_size > 0:
-        node = heap_node[0]
-        heap_size = _pop(heap_cost, heap_node, heap_size)
-        if space.status[node] == 2:
+    while size > 0:
+        node, stance, cost = open_list[0].node, open_list[0].parent, open_list[0].cost
+        size = _pop(open_list, size)
+        square = goal.final and nodes[node].arrived and nodes[stance].arrived
+        if nodes[node].status == _CLOSED and not square:
             continue
-        space.status[node] = 2
-        side, rest = node // stances, node % stances
-        heading = rest % headings
-        ix, iy = (rest // headings) % nx, rest // headings // nx
-        sign = 1.0 if side == 0 else -1.0
-        x = feet[0, 0] + (ix - space.start[1]) * limits.lattice
-        y = feet[0, 1] + (iy - space.start[0]) * limits.lattice
-        yaw = _heading(feet[0, 3], heading, headings)
-        parent = space.parent[node]
-        if parent < 0:
-            px, py, pz, pyaw = feet[1, 0], feet[1, 1], feet[1, 2], feet[1, 3]
-        else:
-            prest = parent % stances
-            px = feet[0, 0] + ((prest // headings) % nx - space.start[1]) * limits.lattice
-            py = feet[0, 1] + (prest // headings // nx - space.start[0]) * limits.lattice
-            pz, pyaw = space.ground[prest, 0], _heading(feet[0, 3], prest % headings, headings)
-        _progress(goal, limits, x, y, yaw, sign, found)
-        reached = found[4] > 0.0
-        if goal.final > 0.0:
-            _progress(goal, limits, px, py, pyaw, -sign, found)
-            reached = reached and found[4] > 0.0
-        elif space.depth[node] < limits.minimum_steps:
-            reached = False
-        if reached:
-            return REACHED, node, expansions, start_to_go, best_to_go
+        if cost < 0.0:
+            cost = _edge_cost(
+                cells, planes, resolution, snap_limits, samples, limits, reference, feet, lattice, trigonometry,
+                nodes, grounds, stance, node,
+            )  # fmt: skip
+            if cost < 0.0:
+                rejections[int(-cost)] += 1
+            elif _improve(nodes, node, stance, cost) or square:
+                size = _push(open_list, size, cost + limits.heuristic_weight * nodes[node].to_go, cost, node, stance)
+                if nodes[node].to_go < nodes[best].to_go:
+                    best = node
+            continue
+        if square:
+            return REACHED, node, stance, cost, expansions, start_to_go - nodes[node].to_go
+        nodes[node].status = _CLOSED
+        if nodes[node].arrived and not goal.final and nodes[node].depth >= limits.minimum_steps:
+            return REACHED, node, stance, cost, expansions, start_to_go - nodes[node].to_go
         if expansions >= max_expansions:
-            return OUT_OF_BUDGET, best, expansions, start_to_go, best_to_go
+            return (
+                OUT_OF_BUDGET,
+                best,
+                nodes[best].parent,
+                nodes[best].cost,
+                expansions,
+                start_to_go - nodes[best].to_go,
+            )
         expansions += 1
-        z, slope_a, slope_b = space.ground[rest, 0], space.ground[rest, 1], space.ground[rest, 2]
-        uphill = slope_a * np.cos(yaw) + slope_b * np.sin(yaw) > limits.uphill_slope
+        side, heading = node // stances, node % stances // (ny * nx)
+        iy, ix = node % (ny * nx) // nx, node % nx
         table = side * headings + heading
-        if child_counts[table] < 0:
-            child_counts[table] = _fill_children(limits, yaw, heading, headings, -sign, children[table])
-        for k in range(child_counts[table]):
-            jx, jy = ix + int(children[table, k, 0]), iy + int(children[table, k, 1])
+        if counts[table] < 0:
+            counts[table] = _fill_children(limits, trigonometry, heading, 2.0 * side - 1.0, children[table])
+        if size + counts[table] > open_list.shape[0]:
+            longer = np.empty(2 * open_list.shape[0], open_list.dtype)
+            for k in range(size):
+                longer[k] = open_list[k]
+            open_list = longer
+        for k in range(counts[table]):
+            jx, jy, turned = ix + children[table, k, 0], iy + children[table, k, 1], children[table, k, 2]
             if jx < 0 or jy < 0 or jx >= nx or jy >= ny:
                 rejections[_OUTSIDE] += 1
                 continue
-            turned = int(children[table, k, 2])
-            snap = (jy * nx + jx) * headings + turned
+            snap = (turned * ny + jy) * nx + jx
+            if grounds[snap].outcome > FOOTHOLD:
+                rejections[grounds[snap].outcome] += 1
+                continue
             child = (1 - side) * stances + snap
-            if space.status[child] == 2:
+            if nodes[child].status == 0:
+                x, y = _place(feet, lattice, limits.lattice, snap)
+                nodes[child].status = _JUDGED
+                _judge(limits, goal, path, x, y, trigonometry[turned, 0], 2.0 * side - 1.0, nodes[child])
+            square = goal.final and nodes[child].arrived and nodes[node].arrived
+            if nodes[child].status == _CLOSED and not square:
                 continue
-            cx = feet[0, 0] + (jx - space.start[1]) * limits.lattice
-            cy = feet[0, 1] + (jy - space.start[0]) * limits.lattice
-            cyaw = _heading(feet[0, 3], turned, headings)
-            if space.snap[snap] == UNSEEN:
-                space.snap[snap] = snap_sole(cells, planes, resolution, snap_limits, cx, cy, cyaw, space.ground[snap])
-            if space.snap[snap] != FOOTHOLD:
-                rejections[space.snap[snap]] += 1
+            to_go = limits.heuristic_weight * nodes[child].to_go
+            if grounds[snap].outcome == UNSEEN:
+                least = cost + limits.step_cost + nodes[child].off_path_cost
+                if nodes[child].status != _OPEN or least < nodes[child].cost:
+                    size = _push(open_list, size, least + to_go, -1.0, child, node)
                 continue
-            rise = space.ground[snap, 0] - z
-            reach = children[table, k, 3]
-            reason = _forbidden(limits, rise, reach, uphill)
-            if reason == 0:
-                if (cx - px) ** 2 + (cy - py) ** 2 > limits.swing_reach**2:
-                    reason = _SWING_LONG
-                elif abs(space.ground[snap, 0] - pz) > limits.swing_height_change:
-                    reason = _SWING_HIGH
-            if reason > 0:
-                rejections[reason] += 1
-                continue
-            _progress(goal, limits, cx, cy, cyaw, -sign, found)
-            to_go = found[3]
-            a, b = space.ground[snap, 1], space.ground[snap, 2]
-            width = -sign * (np.cos(yaw) * (cy - y) - np.sin(yaw) * (cx - x))
-            cost = (
-                space.cost[node]
-                + limits.step_cost
-                + limits.height_cost * abs(rise)
-                + limits.tilt_cost * np.sqrt(a * a + b * b)
-                + limits.yaw_cost * abs(found[2])
-                + limits.width_cost * abs(width - limits.ideal_width)
-                + limits.path_cost * found[1]
-                + limits.share_cost * (1.0 - space.ground[snap, 3])
-            )
-            depth = space.depth[node]
-            if depth < goal.reference.shape[0] and np.isfinite(goal.reference[depth, 0]):
-                cost += limits.reference_cost * np.hypot(cx - goal.reference[depth, 0], cy - goal.reference[depth, 1])
-            if space.status[child] == 0 or cost < space.cost[child]:
-                space.status[child] = 1
-                space.cost[child], space.parent[child], space.depth[child] = cost, node, depth + 1
-                if heap_size == heap_node.shape[0]:
-                    heap_cost = np.concatenate((heap_cost, np.empty(heap_size)))
-                    heap_node = np.concatenate((heap_node, np.empty(heap_size, np.int32)))
-                estimate = cost + limits.heuristic_weight * to_go
-                heap_size = _push(heap_cost, heap_node, heap_size, estimate, child)
-                if to_go < best_to_go:
-                    best, best_to_go = child, to_go
-    return EXHAUSTED, best, expansions, start_to_go, best_to_go
+            child_cost = _edge_cost(
+                cells, planes, resolution, snap_limits, samples, limits, reference, feet, lattice, trigonometry,
+                nodes, grounds, node, child,
+            )  # fmt: skip
+            if child_cost < 0.0:
+                rejections[int(-child_cost)] += 1
+            elif _improve(nodes, child, node, child_cost) or square:
+                size = _push(open_list, size, child_cost + to_go, child_cost, child, node)
+                if nodes[child].to_go < nodes[best].to_go:
+                    best = child
+    return EXHAUSTED, best, nodes[best].parent, nodes[best].cost, expansions, start_to_go - nodes[best].to_go
 
 
 @kernel
-def _forbidden(limits: StepLimits, rise: float, reach: float, uphill: bool) -> int:
-    """The reason why a step of this rise and reach is not allowed; 0 where it is."""
+def _improve(nodes: Records, node: int, parent: int, cost: float) -> bool:
+    """Open a node by a way that is cheaper than the ways known so far; whether it was."""
+    there = nodes[node]
+    if there.status == _CLOSED or (there.status == _OPEN and cost >= there.cost):
+        return False
+    there.status, there.cost, there.parent, there.depth = _OPEN, cost, parent, nodes[parent].depth + 1
+    return True
+
+
+@kernel
+def _edge_cost(
+    cells: NDArray[np.int32],
+    planes: Array,
+    resolution: float,
+    snap_limits: Records,
+    samples: Array,
+    limits: Records,
+    reference: Array,
+    feet: Array,
+    lattice: NDArray[np.int64],
+    trigonometry: Array,
+    nodes: Records,
+    grounds: Records,
+    stance: int,
+    node: int,
+) -> float:
+    """Cost of the way to a node over a stance; where the step is not allowed, the reason as a negative number."""
+    layer = lattice[1] * lattice[2]
+    stances = lattice[0] * layer
+    x, y = _place(feet, lattice, limits.lattice, node)
+    ground, below = grounds[node % stances], grounds[stance % stances]
+    if ground.outcome == UNSEEN:
+        found = np.zeros(4)
+        ground.outcome = snap_sole(
+            cells, planes, resolution, snap_limits, samples, x, y, trigonometry[node % stances // layer, 0], found
+        )
+        ground.z, ground.a, ground.b, ground.share = found[0], found[1], found[2], found[3]
+    if ground.outcome != FOOTHOLD:
+        return -float(ground.outcome)
+    before = nodes[stance].parent
+    if before == 2 * stances:
+        swing_x, swing_y, swing_z = feet[1, 0], feet[1, 1], feet[1, 2]
+    else:
+        swing_x, swing_y = _place(feet, lattice, limits.lattice, before)
+        swing_z = grounds[before % stances].z
+    stance_x, stance_y = _place(feet, lattice, limits.lattice, stance)
+    heading = stance % stances // layer
+    cos, sin = trigonometry[heading, 1], trigonometry[heading, 2]
+    length = cos * (x - stance_x) + sin * (y - stance_y)
+    width = abs(cos * (y - stance_y) - sin * (x - stance_x))
+    rise = ground.z - below.z
+    reach = np.hypot(length, width - limits.ideal_width)
+    reason = 0
     if rise > limits.height_change:
-        return _TOO_HIGH
-    if rise < -limits.height_change:
-        return _TOO_LOW
-    if rise > limits.reach_up_height and reach > limits.reach_up:
-        return _FAR_UP
-    if rise < -limits.reach_down_height and reach > limits.reach_down:
-        return _FAR_DOWN
-    if uphill and rise < -limits.uphill_drop:
-        return _UPHILL
-    return 0
+        reason = _TOO_HIGH
+    elif rise < -limits.height_change:
+        reason = _TOO_LOW
+    elif rise > limits.reach_up_height and reach > limits.reach_up:
+        reason = _FAR_UP
+    elif rise < -limits.reach_down_height and reach > limits.reach_down:
+        reason = _FAR_DOWN
+    elif rise < -limits.uphill_drop and below.a * cos + below.b * sin > limits.uphill_tangent:
+        reason = _UPHILL
+    elif np.hypot(x - swing_x, y - swing_y) > limits.swing_reach:
+        reason = _SWING_LONG
+    elif abs(ground.z - swing_z) > limits.swing_height_change:
+        reason = _SWING_HIGH
+    if reason > 0:
+        return -float(reason)
+    cost = (
+        nodes[stance].cost
+        + limits.step_cost
+        + nodes[node].off_path_cost
+        + limits.height_cost * abs(rise)
+        + limits.tilt_cost * np.hypot(ground.a, ground.b)
+        + limits.width_cost * abs(width - limits.ideal_width)
+        + limits.share_cost * (1.0 - ground.share)
+    )
+    depth = nodes[stance].depth
+    if depth < reference.shape[0] and np.isfinite(reference[depth, 0]):
+        cost += limits.reference_cost * np.hypot(x - reference[depth, 0], y - reference[depth, 1])
+    return cost
 
 
 @kernel
-def _progress(goal: SearchGoal, limits: StepLimits, x: float, y: float, yaw: float, sign: float, found: Array) -> None:
-    """Judge a foot by the body beside it.
+def _place(feet: Array, lattice: NDArray[np.int64], spacing: float, node: int) -> tuple[float, float]:
+    """Where a node is: x, y from the corner."""
+    ix, iy = node % lattice[2] - lattice[5], node // lattice[2] % lattice[1] - lattice[4]
+    return feet[0, 0] + ix * spacing, feet[0, 1] + iy * spacing
 
-    Writes arc length, distance off the path, heading off the path's, estimated cost to go, and 1 where at the goal.
+
+@kernel
+def _judge(
+    limits: Records, goal: Records, path: Array, x: float, y: float, yaw: float, sign: float, node: Records
+) -> None:
+    """Judge a foot by the body beside it: the cost of being off the path, the estimated cost to go, whether it arrived.
+
+    The estimate counts the steps that are needed at least, by the way left along the path and by the heading.
     """
     body_x = x + 0.5 * sign * limits.ideal_width * np.sin(yaw)
     body_y = y - 0.5 * sign * limits.ideal_width * np.cos(yaw)
-    path = goal.path
-    nearest = np.inf
+    nearest, arc_length, off_heading = np.inf, 0.0, 0.0
     for i in range(path.shape[0] - 1):
         span_x, span_y = path[i + 1, 0] - path[i, 0], path[i + 1, 1] - path[i, 1]
         squared = max(span_x * span_x + span_y * span_y, 1e-12)
@@ -295,77 +325,70 @@ def _progress(goal: SearchGoal, limits: StepLimits, x: float, y: float, yaw: flo
         off = off_x * off_x + off_y * off_y
         if off < nearest:
             nearest = off
-            found[0] = path[i, 3] + t * (path[i + 1, 3] - path[i, 3])
-            found[2] = _wrap(yaw - path[i, 2] - t * _wrap(path[i + 1, 2] - path[i, 2]))
-    found[1] = np.sqrt(nearest)
+            arc_length = path[i, 3] + t * (path[i + 1, 3] - path[i, 3])
+            off_heading = _wrap(yaw - path[i, 2] - t * _wrap(path[i + 1, 2] - path[i, 2]))
+    off_path = np.sqrt(nearest)
     last = path.shape[0] - 1
-    remaining = max(goal.arc_length - found[0], 0.0)
+    remaining = max(goal.arc_length - arc_length, 0.0)
     turn = abs(_wrap(yaw - path[last, 2]))
-    if goal.final > 0.0:
-        off_goal = np.hypot(body_x - path[last, 0], body_y - path[last, 1])
-        remaining = max(remaining, off_goal)
-        found[4] = 1.0 if off_goal <= limits.goal_tolerance and turn <= limits.goal_yaw_tolerance else 0.0
+    if goal.final:
+        remaining = np.hypot(body_x - path[last, 0], body_y - path[last, 1])
+        node.arrived = remaining <= limits.goal_tolerance and turn <= limits.goal_yaw_tolerance
     else:
-        along, across = remaining / limits.along_tolerance, found[1] / limits.across_tolerance
-        found[4] = 1.0 if along * along + across * across <= 1.0 and turn <= limits.heading_tolerance else 0.0
-    found[3] = limits.step_cost * max(remaining / limits.reach, turn / limits.turn_per_step)
+        along, across = remaining / limits.along_tolerance, off_path / limits.across_tolerance
+        node.arrived = along * along + across * across <= 1.0 and turn <= limits.heading_tolerance
+    node.off_path_cost = limits.path_cost * off_path + limits.yaw_cost * abs(off_heading)
+    node.to_go = limits.step_cost * max(remaining / limits.stride, turn / limits.turn)
 
 
 @kernel
-def _most_children(limits: StepLimits, headings: int) -> int:
+def _most_children(limits: Records) -> int:
     """Upper bound of the number of steps from one stance."""
     side = 2 * int(np.ceil((limits.reach + limits.maximum_width) / limits.lattice)) + 1
-    turns = int((limits.inward_yaw + limits.outward_yaw + 2e-9) / (2 * np.pi / headings)) + 1
+    turns = int((limits.inward_yaw + limits.outward_yaw + 2e-9) / limits.heading) + 1
     return side * side * turns
 
 
 @kernel
-def _fill_children(limits: StepLimits, yaw: float, heading: int, headings: int, sign: float, children: Array) -> int:
-    """List the steps that a foot on the side `sign` may make from a stance foot of heading `yaw`, on level ground.
+def _fill_children(limits: Records, trigonometry: Array, heading: int, sign: float, children: NDArray[np.int64]) -> int:
+    """List the steps that a foot on the side `sign` may make on level ground from a stance foot of a heading.
 
-    Rows of lattice offsets in x and y, heading index, reach; returns how many.
+    Rows of lattice offsets in x and y and heading; returns how many.
     """
-    cos, sin = np.cos(yaw), np.sin(yaw)
+    headings = trigonometry.shape[0]
+    cos, sin = trigonometry[heading, 1], trigonometry[heading, 2]
     most = int(np.ceil((limits.reach + limits.maximum_width) / limits.lattice))
-    turn = 2 * np.pi / headings
+    turns = int(max(limits.inward_yaw, limits.outward_yaw) / limits.heading + 1e-9)
+    whole = headings * limits.heading > 2 * np.pi - 1e-9
     count = 0
     for j in range(-most, most + 1):
         for i in range(-most, most + 1):
             dx, dy = i * limits.lattice, j * limits.lattice
             length, width = cos * dx + sin * dy, sign * (cos * dy - sin * dx)
-            reach = np.hypot(length, width - limits.ideal_width)
-            if length < -limits.back_reach or reach > limits.reach:
+            if length < -limits.back_reach or np.hypot(length, width - limits.ideal_width) > limits.reach:
                 continue
             if width < limits.minimum_width or width > limits.maximum_width:
                 continue
-            for k in range(-headings // 2, headings // 2 + 1):
-                outward = sign * k * turn
+            for k in range(-turns, turns + 1):
+                if not whole and (heading + k < 0 or heading + k >= headings):
+                    continue
+                outward = sign * k * limits.heading
                 if outward < -limits.inward_yaw - 1e-9 or outward > limits.outward_yaw + 1e-9:
                     continue
                 if _soles_clear(limits, length, width, outward):
-                    children[count, 0], children[count, 1] = i, j
-                    children[count, 2], children[count, 3] = (heading + k) % headings, reach
+                    children[count, 0], children[count, 1], children[count, 2] = i, j, (heading + k) % headings
                     count += 1
     return count
 
 
 @kernel
-def _soles_clear(limits: StepLimits, length: float, width: float, outward: float) -> bool:
+def _soles_clear(limits: Records, length: float, width: float, outward: float) -> bool:
     """Whether two soles, the second at length, width, outward from the first, keep their gap (separating axes)."""
-    c, s = abs(np.cos(outward)), abs(np.sin(outward))
-    along, across = limits.half_length * (1 + c) + limits.half_width * s, limits.half_width * (1 + c)
-    across += limits.half_length * s
-    if abs(length) >= along + limits.sole_gap or abs(width) >= across + limits.sole_gap:
-        return True
     cos, sin = np.cos(outward), np.sin(outward)
+    along = limits.half_length * (1 + abs(cos)) + limits.half_width * abs(sin) + limits.sole_gap
+    across = limits.half_width * (1 + abs(cos)) + limits.half_length * abs(sin) + limits.sole_gap
     turned_length, turned_width = cos * length + sin * width, cos * width - sin * length
-    return abs(turned_length) >= along + limits.sole_gap or abs(turned_width) >= across + limits.sole_gap
-
-
-@kernel
-def _heading(first: float, index: int, headings: int) -> float:
-    turn = index if 2 * index < headings else index - headings
-    return first + turn * 2 * np.pi / headings
+    return max(abs(length), abs(turned_length)) >= along or max(abs(width), abs(turned_width)) >= across
 
 
 @kernel
@@ -374,32 +397,30 @@ def _wrap(angle: float) -> float:
 
 
 @kernel
-def _push(costs: Array, nodes: NDArray[np.int32], size: int, cost: float, node: int) -> int:
-    """Add a node to a binary heap; its new size."""
+def _push(edges: Records, size: int, estimate: float, cost: float, node: int, parent: int) -> int:
+    """Add an edge to a binary heap; its new size."""
     i = size
-    while i > 0:
-        above = (i - 1) // 2
-        if costs[above] <= cost:
-            break
-        costs[i], nodes[i] = costs[above], nodes[above]
-        i = above
-    costs[i], nodes[i] = cost, node
+    while i > 0 and edges[(i - 1) // 2].estimate > estimate:
+        edges[i] = edges[(i - 1) // 2]
+        i = (i - 1) // 2
+    edge = edges[i]
+    edge.estimate, edge.cost, edge.node, edge.parent = estimate, cost, node, parent
     return size + 1
 
 
 @kernel
-def _pop(costs: Array, nodes: NDArray[np.int32], size: int) -> int:
-    """Remove the first node of a binary heap; its new size."""
+def _pop(edges: Records, size: int) -> int:
+    """Remove the first edge of a binary heap; its new size."""
     size -= 1
-    cost, node = costs[size], nodes[size]
+    estimate = edges[size].estimate
     i = 0
     while 2 * i + 1 < size:
         below = 2 * i + 1
-        if below + 1 < size and costs[below + 1] < costs[below]:
+        if below + 1 < size and edges[below + 1].estimate < edges[below].estimate:
             below += 1
-        if costs[below] >= cost:
+        if edges[below].estimate >= estimate:
             break
-        costs[i], nodes[i] = costs[below], nodes[below]
+        edges[i] = edges[below]
         i = below
-    costs[i], nodes[i] = cost, node
+    edges[i] = edges[size]
     return size

@@ -6,7 +6,8 @@ measured from the corner of the raster, so that the arithmetic does not lose bit
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,18 +23,17 @@ SNAP_REASONS = ("", "", "no ground", "too steep", "ground above the sole", "foot
 SAMPLE_SPACING = 0.013
 
 
-class SnapLimits(NamedTuple):
-    """What a sole may stand on, as floats for the kernels; see `FootstepParameters`."""
-
-    half_length: float
-    half_width: float
-    steepest: float  # tangent of the steepest slope
-    share: float
-    support_below: float
-    ground_above: float
-    cliff_height: float
-    cliff_toe: float
-    cliff_side: float
+# What a sole may stand on, for the kernels: fields are named after the parameters; `under` counts the samples that lie
+# under the sole.
+SNAP_LIMITS = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            *("tilt_tangent", "share", "support_below", "ground_above", "cliff_height"),
+            "under",
+        )
+    ]
+)
 
 
 @kernel
@@ -152,63 +152,59 @@ def close_seams(cells: Cells, planes: Array, resolution: float, width: float, to
 
 @kernel
 def snap_sole(
-    cells: Cells, planes: Array, resolution: float, limits: SnapLimits, x: float, y: float, yaw: float, out: Array
+    cells: Cells,
+    planes: Array,
+    resolution: float,
+    snap_limits: NDArray[Any],
+    samples: Array,
+    x: float,
+    y: float,
+    yaw: float,
+    out: Array,
 ) -> int:
     """Put a level sole at x, y (from the corner), yaw on the plane of the cell under its centre.
 
-    Writes height, slopes a and b, and supported share into `out` (4,); returns FOOTHOLD or the reason why not.
+    Writes height, slopes a and b, and supported share into `out` (4,), as far as they are known when a reason against
+    the foothold is found; returns FOOTHOLD or that reason. `samples` (N, 2) are points of the sole, then of its
+    surroundings, see `sole_samples`.
     """
+    limits = snap_limits[0]
     ny, nx = cells.shape
-    ix, iy = int(np.floor(x / resolution)), int(np.floor(y / resolution))
-    if ix < 0 or iy < 0 or ix >= nx or iy >= ny or cells[iy, ix] < 0:
+    scale = 1.0 / resolution
+    if x < 0.0 or y < 0.0 or x * scale >= nx or y * scale >= ny:
         return NO_GROUND
-    ground = cells[iy, ix]
+    ground = cells[int(y * scale), int(x * scale)]
+    if ground < 0:
+        return NO_GROUND
     a, b, c = planes[ground, 0], planes[ground, 1], planes[ground, 2]
-    out[0], out[1], out[2] = a * x + b * y + c, a, b
-    if a * a + b * b > limits.steepest * limits.steepest:
+    out[0], out[1], out[2], out[3] = a * x + b * y + c, a, b, 1.0
+    if a * a + b * b > limits.tilt_tangent * limits.tilt_tangent:
         return TOO_STEEP
     cos, sin = np.cos(yaw), np.sin(yaw)
-    length, width = 2 * limits.half_length, 2 * limits.half_width
-    along = int(np.ceil(length / SAMPLE_SPACING))
-    across = int(np.ceil(width / SAMPLE_SPACING))
-    before = int(np.ceil(limits.cliff_toe / SAMPLE_SPACING))
-    beside = int(np.ceil(limits.cliff_side / SAMPLE_SPACING))
-    supported = 0
-    cliff = False
-    for i in range(-beside, along + before + 1):
-        if i < 0:
-            u = -limits.half_length + limits.cliff_side * i / beside
-        elif i > along:
-            u = limits.half_length + limits.cliff_toe * (i - along) / before
-        else:
-            u = -limits.half_length + length * i / along
-        for j in range(-beside, across + beside + 1):
-            if j < 0:
-                v = -limits.half_width + limits.cliff_side * j / beside
-            elif j > across:
-                v = limits.half_width + limits.cliff_side * (j - across) / beside
-            else:
-                v = -limits.half_width + width * j / across
-            under = 0 <= i <= along and 0 <= j <= across
-            px, py = x + cos * u - sin * v, y + sin * u + cos * v
-            jx, jy = int(np.floor(px / resolution)), int(np.floor(py / resolution))
-            if jx < 0 or jy < 0 or jx >= nx or jy >= ny:
-                continue
-            there = cells[jy, jx]
-            if there == ground:
-                supported += under
-            elif there >= 0:
-                rise = (planes[there, 0] - a) * px + (planes[there, 1] - b) * py + planes[there, 2] - c
-                if under:
-                    if rise > limits.ground_above:
-                        return GROUND_ABOVE
-                    supported += rise >= -limits.support_below
-                elif rise > limits.cliff_height:
-                    cliff = True
-    out[3] = supported / ((along + 1) * (across + 1))
-    if cliff:
-        return AT_CLIFF
-    return FOOTHOLD if out[3] >= limits.share else TOO_SMALL
+    under = int(limits.under)
+    unsupported = 0
+    for n in range(samples.shape[0]):
+        u, v = samples[n, 0], samples[n, 1]
+        px, py = x + cos * u - sin * v, y + sin * u + cos * v
+        there = -1
+        if px >= 0.0 and py >= 0.0 and px * scale < nx and py * scale < ny:
+            there = cells[int(py * scale), int(px * scale)]
+        if there == ground:
+            continue
+        rise = -np.inf
+        if there >= 0:
+            rise = (planes[there, 0] - a) * px + (planes[there, 1] - b) * py + planes[there, 2] - c
+        if n >= under:
+            if rise > limits.cliff_height:
+                return AT_CLIFF
+        elif rise > limits.ground_above:
+            return GROUND_ABOVE
+        elif rise < -limits.support_below:
+            unsupported += 1
+            out[3] = 1.0 - unsupported / limits.under
+            if out[3] < limits.share:
+                return TOO_SMALL
+    return FOOTHOLD
 
 
 @kernel
@@ -227,8 +223,9 @@ def sweep_soles(
     `soles` (N, 6) rows x, y, z, yaw of the centre in the world and slopes a, b; `clearances` (N,) is filled.
     """
     ny, nx = cells.shape
-    along = int(np.ceil(2 * half_length / resolution))
-    across = int(np.ceil(2 * half_width / resolution))
+    scale = 1.0 / resolution
+    along = int(np.ceil(2 * half_length / SAMPLE_SPACING))
+    across = int(np.ceil(2 * half_width / SAMPLE_SPACING))
     for n in range(soles.shape[0]):
         x, y = soles[n, 0] - corner[0], soles[n, 1] - corner[1]
         cos, sin = np.cos(soles[n, 3]), np.sin(soles[n, 3])
@@ -238,12 +235,12 @@ def sweep_soles(
             for j in range(across + 1):
                 v = half_width * (2 * j / across - 1)
                 dx, dy = cos * u - sin * v, sin * u + cos * v
-                jx, jy = int(np.floor((x + dx) / resolution)), int(np.floor((y + dy) / resolution))
-                if jx < 0 or jy < 0 or jx >= nx or jy >= ny:
+                px, py = x + dx, y + dy
+                if px < 0.0 or py < 0.0 or px * scale >= nx or py * scale >= ny:
                     continue
-                there = cells[jy, jx]
+                there = cells[int(py * scale), int(px * scale)]
                 if there >= 0:
-                    ground = planes[there, 0] * (x + dx) + planes[there, 1] * (y + dy) + planes[there, 2]
+                    ground = planes[there, 0] * px + planes[there, 1] * py + planes[there, 2]
                     smallest = min(smallest, soles[n, 2] + soles[n, 4] * dx + soles[n, 5] * dy - ground)
         clearances[n] = smallest
 
@@ -258,3 +255,33 @@ def plane_heights(cells: Cells, planes: Array, resolution: float, corner: Array,
     a, b, c = planes[ground].T
     heights[inside] = np.where(ground >= 0, a * from_corner[inside, 0] + b * from_corner[inside, 1] + c, np.nan)
     return heights
+
+
+def sole_samples(length: float, width: float, before_toe: float, beside: float) -> tuple[Array, int]:
+    """Points at which a sole feels the ground: those under it to its very edge, the outer ones first, then around it.
+
+    Args:
+        length: length of the sole [m].
+        width: its width [m].
+        before_toe: how far before the toe it feels for cliffs [m].
+        beside: how far behind the heel and beside the sides [m].
+
+    Returns:
+        Points in the sole frame, (N, 2), and how many of them are under the sole.
+    """
+    x = _stations(-0.5 * length - beside, -0.5 * length, 0.5 * length, 0.5 * length + before_toe)
+    y = _stations(-0.5 * width - beside, -0.5 * width, 0.5 * width, 0.5 * width + beside)
+    points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+    outwards = np.max(np.abs(points) / (0.5 * length, 0.5 * width), axis=1)
+    under = outwards <= 1.0
+    inner, around = points[under], points[~under]
+    return np.concatenate((inner[np.argsort(-outwards[under], kind="stable")], around)), len(inner)
+
+
+def _stations(*ends: float) -> Array:
+    """Coordinates from the first end to the last that hold all ends and lie no farther apart than the spacing."""
+    pieces = [
+        np.linspace(low, high, int(np.ceil((high - low) / SAMPLE_SPACING)), endpoint=False)
+        for low, high in pairwise(ends)
+    ]
+    return np.concatenate((*pieces, ends[-1:]))

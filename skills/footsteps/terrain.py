@@ -7,6 +7,7 @@ blocks whose tops line up carry one foot together, and no polygon is ever clippe
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -14,13 +15,13 @@ from numpy.typing import NDArray
 
 from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
 from skills.footsteps.plane_raster import (
-    SAMPLE_SPACING,
+    SNAP_LIMITS,
     SNAP_REASONS,
-    SnapLimits,
     close_seams,
     draw_regions,
     plane_heights,
     snap_sole,
+    sole_samples,
     sweep_soles,
 )
 from skills.geometry.polygon import convex_hull
@@ -117,29 +118,22 @@ class RegionTerrain:
         x, y, yaw = float(x), float(y), float(yaw)
         found = np.full(4, np.nan)
         from_corner = np.array((x, y)) - self.corner_world
-        outcome = snap_sole(
-            self.cells,
-            self.planes,
-            self.resolution,
-            snap_limits(parameters),
-            from_corner[0],
-            from_corner[1],
-            yaw,
-            found,
-        )
+        limits, samples = foothold_rules(parameters)
+        x_corner, y_corner = (float(n) for n in from_corner)
+        outcome = snap_sole(self.cells, self.planes, self.resolution, limits, samples, x_corner, y_corner, yaw, found)
         z, a, b, share = found
         T_world_sole = None if np.isnan(z) else sole_on_slope(x, y, z, yaw, a, b)
         return Foothold(T_world_sole, 0.0 if np.isnan(share) else float(share), SNAP_REASONS[outcome])
 
     def foothold_polygon(self, T_world_sole: Pose, parameters: FootstepParameters) -> Array:
         """Supported part of a sole, (N, 2) convex polygon in the sole frame, counter-clockwise [m]."""
-        u = _samples(parameters.sole_length)
-        v = _samples(parameters.sole_width)
-        points_sole = np.column_stack((np.repeat(u, len(v)), np.tile(v, len(u)), np.zeros(len(u) * len(v))))
+        limits, samples = foothold_rules(parameters)
+        under = samples[: int(limits["under"][0])]
+        points_sole = np.column_stack((under, np.zeros(len(under))))
         points_world = T_world_sole @ points_sole
         rise = self.heights(points_world) - points_world[:, 2]
         supported = (rise >= -parameters.support_below) & (rise <= parameters.ground_above)
-        return convex_hull(points_sole[supported, :2])
+        return convex_hull(_row_ends(points_sole[supported, :2]))
 
     def heights(self, points_world: Array) -> Array:
         """Height of the ground under points (N, 2 or 3), (N,) [m]; NaN where none is known."""
@@ -221,20 +215,26 @@ def slopes(T_world_sole: Pose) -> tuple[float, float]:
     return float(-nx / nz), float(-ny / nz)
 
 
-def snap_limits(parameters: FootstepParameters) -> SnapLimits:
-    """The limits on a foothold, as the kernels take them."""
-    return SnapLimits(
-        half_length=0.5 * parameters.sole_length,
-        half_width=0.5 * parameters.sole_width,
-        steepest=float(np.tan(parameters.tilt)),
-        share=float(parameters.share),
-        support_below=float(parameters.support_below),
-        ground_above=float(parameters.ground_above),
-        cliff_height=float(parameters.cliff_height),
-        cliff_toe=float(parameters.cliff_toe),
-        cliff_side=float(parameters.cliff_side),
+@lru_cache(maxsize=8)
+def foothold_rules(parameters: FootstepParameters) -> tuple[NDArray[np.void], Array]:
+    """The limits on a foothold as the kernels take them, one `SNAP_LIMITS`, and where the sole feels the ground."""
+    samples, under = sole_samples(
+        parameters.sole_length, parameters.sole_width, parameters.cliff_toe, parameters.cliff_side
     )
+    limits = pack(SNAP_LIMITS, parameters, {"tilt_tangent": np.tan(parameters.tilt), "under": under})
+    limits.flags.writeable = False
+    return limits, readonly(samples)
 
 
-def _samples(size: float) -> Array:
-    return np.linspace(-0.5 * size, 0.5 * size, int(np.ceil(size / SAMPLE_SPACING)) + 1)
+def pack(layout: np.dtype[np.void], parameters: FootstepParameters, derived: dict[str, float]) -> NDArray[np.void]:
+    """One record of a layout, from the parameters of the same names and from derived values."""
+    names = layout.names or ()
+    values = tuple(derived[name] if name in derived else getattr(parameters, name) for name in names)
+    return np.array([values], dtype=layout)
+
+
+def _row_ends(points: Array) -> Array:
+    """Of points on a grid the first and the last of each row, which have the same convex hull."""
+    ordered = points[np.lexsort((points[:, 1], points[:, 0]))]
+    starts = np.flatnonzero(np.diff(ordered[:, 0], prepend=np.nan) != 0.0)
+    return np.concatenate((ordered[starts], ordered[np.append(starts[1:], len(ordered)) - 1]))
