@@ -24,12 +24,16 @@ def check_dataflow(expansion: Expansion, problems: list[Problem]) -> dict[str, A
         elif not fits(use.type, types[use.key]):
             problems.append(_mismatch(use, "gives", origin[use.key]))
     for use in expansion.reads:
+        if use.key not in types and use.key in expansion.doubtful:
+            continue
         if use.key not in types:
             message = f'nothing writes "{use.key}"{nearest(use.key, types)}'
             problems.append(Problem(use.location, message, use.path))
         elif not fits(types[use.key], use.type):
             problems.append(_mismatch(use, "takes", origin[use.key]))
     for port in definition.outputs:
+        if port.name not in types and port.name in expansion.doubtful:
+            continue
         if port.name not in types:
             problems.append(Problem(port.location, f'nothing writes the output "{port.name}"'))
         elif not fits(types[port.name], port.type):

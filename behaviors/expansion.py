@@ -10,17 +10,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from behaviors.bodies import check_keys, get, is_scalar, read_parameters, seen_below, with_child
 from behaviors.composites import COMPOSITES
 from behaviors.decorators import Decorator
 from behaviors.definition import Definition
-from behaviors.kinds import DECORATORS
+from behaviors.kinds import DECORATORS, unknown_kind
 from behaviors.leaf import Leaf
-from behaviors.naming import get, sibling_names, slug
+from behaviors.naming import sibling_names, slug
 from behaviors.ports import declared_inputs, declared_outputs
 from behaviors.registry import Registry
 from behaviors.spec import NodeSpec, Wire
-from behaviors.wiring import read_wires
-from strict_yaml import Entry, Kind, Location, Node, Problem, nearest, read_dataclass
+from behaviors.wiring import named_ports, read_wires, written_keys
+from strict_yaml import Entry, Kind, Location, Node, Problem, nearest
 
 MAXIMUM_NODES = 5000
 MAXIMUM_DEPTH = 100
@@ -47,6 +48,7 @@ class Expansion:
         definition: what was expanded.
         root, safe_stop: the trees; None where they could not be read or are not there.
         reads, writes: the ports at the ends of all keys.
+        doubtful: keys that something may write that could not be read; not known to be missing.
     """
 
     definition: Definition
@@ -54,6 +56,7 @@ class Expansion:
     safe_stop: NodeSpec | None = None
     reads: list[Use] = field(default_factory=list)
     writes: list[Use] = field(default_factory=list)
+    doubtful: set[str] = field(default_factory=set)
 
 
 def expand(definition: Definition, registry: Registry, problems: list[Problem]) -> Expansion:
@@ -142,15 +145,15 @@ class _Expander:
         cls = self.registry.get(head.key)
         if cls is not None:
             return self._leaf(cls, head, scope, path, name)
-        self._unknown(head, path)
+        self._add(head.location, unknown_kind(head.key, self.registry), path)
+        self._doubt(head, scope)
+        self._children(seen_below(head.node, self.registry), scope, path, depth)
         return None
 
-    def _unknown(self, head: Entry, path: str) -> None:
-        kinds = ("subtree", *COMPOSITES, *DECORATORS)
-        is_leaf = head.key[:1].isupper()
-        what, names, where = ("leaf", self.registry.names, "leaves") if is_leaf else ("node", kinds, "nodes")
-        hint = nearest(head.key, (*kinds, *self.registry.names))
-        self._add(head.location, f'unknown {what} "{head.key}"{hint} ({where}: {", ".join(names)})', path)
+    def _doubt(self, head: Entry, scope: _Scope) -> None:
+        """Do not say of the outputs of a node that cannot be read that nothing writes them."""
+        keys = written_keys(get(head.node, "out"))
+        self.expansion.doubtful.update(scope.key(key) for key in keys)
 
     def _composite(self, head: Entry, scope: _Scope, path: str, name: str, depth: int) -> NodeSpec | None:
         cls = COMPOSITES[head.key]
@@ -158,9 +161,11 @@ class _Expander:
         if body.kind is Kind.SEQUENCE:
             body = Node(Kind.MAPPING, body.location, (Entry("children", body.location, body),))
         parameters, given = self._parameters(cls, head, body, ("name", "children"), path)
+        if is_scalar(body):
+            return None
         listed = get(body, "children")
         if listed is None or listed.kind is not Kind.SEQUENCE or not listed.elements:
-            got = "nothing" if listed is None else listed.describe()
+            got = "nothing" if listed is None else listed.describe() if listed.elements else "none"
             self._add(listed or head.location, f"got {got}, needs a list of children", path)
             return None
         children = self._children(listed.elements, scope, path, depth)
@@ -168,32 +173,16 @@ class _Expander:
 
     def _decorator(self, head: Entry, scope: _Scope, path: str, name: str, depth: int) -> NodeSpec | None:
         cls: type[Decorator] = DECORATORS[head.key]
-        body = self._with_child(head, path)
+        body = with_child(head, self.registry, path, self.problems)
         parameters, given = self._parameters(cls, head, body, ("name", *cls.slots), path)
+        if is_scalar(body):
+            return None
         slots = [(slot, get(body, slot)) for slot in cls.slots]
         for slot, node in slots:
             if node is None:
                 self._add(head.location, f"{head.key} needs a {slot}", path)
         children = self._children([node for _, node in slots if node is not None], scope, path, depth)
         return NodeSpec(cls, head.key, name, path, head.location, parameters, given, children=children)
-
-    def _with_child(self, head: Entry, path: str) -> Node:
-        """A decorator's body with the child under `child`, also where it is written in short: beside the parameters."""
-        body = head.node
-        if body.kind is Kind.SCALAR and isinstance(body.value, str):
-            return Node(Kind.MAPPING, body.location, (Entry("child", body.location, body),))
-        inline = [entry for entry in body.entries if self._is_kind(entry.key)]
-        if not inline:
-            return body
-        for entry in inline[1:]:
-            self._add(entry.location, f"{head.key} has one child, which is {inline[0].key} already", path)
-        child = Entry("child", inline[0].location, Node(Kind.MAPPING, inline[0].location, (inline[0],)))
-        if body.get("child") is not None:
-            self._add(child.location, f"{head.key} has one child, which is given already", path)
-        return Node(Kind.MAPPING, body.location, (*(entry for entry in body.entries if entry not in inline), child))
-
-    def _is_kind(self, key: str) -> bool:
-        return key == "subtree" or key in COMPOSITES or key in DECORATORS or self.registry.get(key) is not None
 
     def _children(self, nodes: Sequence[Node], scope: _Scope, path: str, depth: int) -> tuple[NodeSpec, ...]:
         heads = [head for node in nodes if (head := self._head(node, path)) is not None]
@@ -205,7 +194,7 @@ class _Expander:
         return tuple(child for child in children if child is not None)
 
     def _subtree(self, head: Entry, scope: _Scope, path: str, name: str, depth: int) -> NodeSpec | None:
-        if not self._check_keys(head, head.node, _SUBTREE_KEYS, path):
+        if not check_keys(head, _SUBTREE_KEYS, path, self.problems):
             return None
         chosen = get(head.node, "tree")
         trees = scope.definition.trees
@@ -214,6 +203,7 @@ class _Expander:
             return None
         definition = trees.get(chosen.value)
         if definition is None:
+            self._doubt(head, scope)
             hint = nearest(chosen.value, trees)
             self._add(
                 chosen, f'unknown tree "{chosen.value}"{hint} (trees: {", ".join(sorted(trees)) or "none"})', path
@@ -259,7 +249,7 @@ class _Expander:
             ports[wire.port] = wire.key
             self.expansion.reads.append(Use(wire.key, inputs[wire.port], location, path, wire.port))
         for name in inputs:
-            if name not in ports:
+            if name not in named_ports(get(head.node, "in")):
                 self._add(head.location, f'input "{name}" of tree "{definition.name}" is not wired', path)
         for wire, _ in self._wires(head, "out", outputs, scope, path):
             ports[wire.port] = wire.key
@@ -272,9 +262,9 @@ class _Expander:
         reads = self._wires(head, "in", types, scope, path)
         for wire, location in reads:
             self.expansion.reads.append(Use(wire.key, inputs[wire.port].type, location, path, wire.port))
-        wired = {wire.port for wire, _ in reads}
+        named = named_ports(get(head.node, "in"))
         for port, declared in inputs.items():
-            if declared.required and port not in wired:
+            if declared.required and port not in named:
                 self._add(head.location, f'input "{port}" of {head.key} is not wired', path)
         types = {port: declared.type for port, declared in outputs.items()}
         writes = self._wires(head, "out", types, scope, path)
@@ -296,31 +286,14 @@ class _Expander:
         self, head: Entry, direction: str, ports: dict[str, Any], scope: _Scope, path: str
     ) -> list[tuple[Wire, Location]]:
         """The wires of a body, with keys as the whole tree knows them."""
-        written = read_wires(get(head.node, direction), ports, direction, path, self.problems)
+        node = get(head.node, direction)
+        written = read_wires(node, ports, direction, path, self.problems)
+        if direction == "out" and len(written) < len(named_ports(node)):
+            self._doubt(head, scope)
         return [(Wire(wire.port, scope.key(wire.key)), location) for wire, location in written]
 
-    def _parameters(
-        self, cls: type[Any], head: Entry, body: Node, structural: tuple[str, ...], path: str
-    ) -> tuple[Any, tuple[str, ...]]:
-        """The parameters in a body, which are all its keys that are not structural."""
-        fields = tuple(cls.Parameters.__dataclass_fields__)
-        if not self._check_keys(head, body, (*structural, *fields), path):
-            return None, ()
-        entries = tuple(entry for entry in body.entries if entry.key in fields)
-        parameters = read_dataclass(Node(Kind.MAPPING, body.location, entries), cls.Parameters, self.problems, path)
-        return parameters, tuple(entry.key for entry in entries)
-
-    def _check_keys(self, head: Entry, body: Node, allowed: tuple[str, ...], path: str) -> bool:
-        if body.kind is Kind.SCALAR and body.value is None:
-            return True
-        if body.kind is not Kind.MAPPING:
-            self._add(body, f"got {body.describe()}, {head.key} takes a mapping of {', '.join(allowed)}", path)
-            return False
-        for entry in body.entries:
-            if entry.key not in allowed:
-                hint = nearest(entry.key, allowed)
-                self._add(entry.location, f'unknown key "{entry.key}"{hint} ({head.key}: {", ".join(allowed)})', path)
-        return True
+    def _parameters(self, cls: type[Any], head: Entry, body: Node, structural: tuple[str, ...], path: str) -> Any:
+        return read_parameters(cls.Parameters, Entry(head.key, head.location, body), structural, path, self.problems)
 
     def _prefix(self, path: str) -> str:
         """What goes before the keys inside a subtree: its path without the name of the whole tree."""

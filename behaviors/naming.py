@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from strict_yaml import Entry, Kind, Location, Node, Problem
+from behaviors.bodies import get
+from strict_yaml import Entry, Location, Problem
 
 _NODE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_ -]*")
 
@@ -35,11 +36,6 @@ def slug(name: str) -> str:
 def snake_case(kind: str) -> str:
     """The name of a node that has none of its own, such as `plan_footsteps` of a `PlanFootsteps`."""
     return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", kind).lower()
-
-
-def get(body: Node, key: str) -> Node | None:
-    """What a body has under a key; None where it is no mapping."""
-    return body.get(key) if body.kind is Kind.MAPPING else None
 
 
 def _given_name(head: Entry, taken: dict[str, Location], path: str, problems: list[Problem]) -> str:

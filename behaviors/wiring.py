@@ -42,6 +42,20 @@ def read_wires(
     return wires
 
 
+def named_ports(node: Node | None) -> tuple[str, ...]:
+    """The ports that `in` or `out` names, rightly or not."""
+    if node is None:
+        return ()
+    return (str(node.value),) if node.kind is Kind.SCALAR else tuple(entry.key for entry in _entries(node))
+
+
+def written_keys(node: Node | None) -> tuple[str, ...]:
+    """The keys that `in` or `out` names, rightly or not."""
+    if node is None or node.kind is Kind.SCALAR:
+        return ()
+    return tuple(str(entry.node.value) for entry in _entries(node))
+
+
 def _entries(node: Node) -> Iterable[Entry]:
     if node.kind is Kind.MAPPING:
         return node.entries

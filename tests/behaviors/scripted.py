@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from behaviors import Call, Input, Leaf, Node, Output, Registry, SkillLeaf, Status, Tree, parse_tree
@@ -173,10 +175,10 @@ def square(number: float) -> float:
     return number * number
 
 
-def make(text: str, robot: ScriptedRobot | None = None, **options: object) -> tuple[Tree, ScriptedRobot]:
+def make(text: str, robot: ScriptedRobot | None = None, **options: Any) -> tuple[Tree, ScriptedRobot]:
     """A tree of toy leaves on a scripted robot."""
     robot = robot or ScriptedRobot()
-    return Tree(parse_tree(text, toys), robot, **options), robot  # type: ignore[arg-type]
+    return Tree(parse_tree(text, toys), robot, **options), robot
 
 
 def run(tree: Tree, robot: ScriptedRobot, ticks: int) -> None:
