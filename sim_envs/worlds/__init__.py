@@ -5,10 +5,8 @@ from sim_envs.worlds.depth_frames import DepthFrames
 from sim_envs.worlds.falls import FallDetector, FallParameters
 from sim_envs.worlds.kinematic_world import KinematicWorld, KinematicWorldParameters
 from sim_envs.worlds.state_drift import StateDrift, StateDriftParameters
-from sim_envs.worlds.true_ground import PIT, TrueGround
 
 __all__ = [
-    "PIT",
     "CourseArena",
     "DepthFrames",
     "FallDetector",
@@ -17,5 +15,4 @@ __all__ = [
     "KinematicWorldParameters",
     "StateDrift",
     "StateDriftParameters",
-    "TrueGround",
 ]

@@ -6,7 +6,7 @@ from typing import Any
 
 from dm_control import composer, mjcf
 
-from sim_envs.courses.course import Box, Course
+from sim_envs.courses import Box, Course
 from skills.geometry.pose import Pose
 
 # Contact and integration settings of the physics world; measured to walk at 1 ms with four contact points a foot.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from sim_envs.courses.course import BoxEvent
+from sim_envs.courses import BoxEvent
 from skills.geometry.pose import Array, Pose
 
 

@@ -9,17 +9,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from sim_envs.courses import Ground
 from sim_envs.robot import RobotDescription
-from sim_envs.worlds.true_ground import TrueGround
 from skills.footsteps.footstep import Side
 from skills.geometry.pose import Array, Pose
 from skills.parameters import parameter, parameters
 from skills.walking.kinematic_walker import WalkerOutput
+from skills.walking.support_polygon import SupportPolygon
 from skills.walking.walking_state import WalkingPhase, WalkingStatus
 
-_SAMPLES_ALONG, _SAMPLES_ACROSS = 14, 8  # about every 2 cm of the sole
-_ANGLES = np.linspace(-np.pi, np.pi, 64, endpoint=False)
-_DIRECTIONS = np.column_stack((np.cos(_ANGLES), np.sin(_ANGLES)))  # distances are short by 0.12 % at most
+_SAMPLES_ALONG, _SAMPLES_ACROSS = 9, 5  # about every 3 cm of the sole
 
 
 @parameters
@@ -46,48 +45,60 @@ class FallParameters:
 class FallDetector:
     """Watches a walk against the true ground."""
 
-    def __init__(self, parameters: FallParameters, description: RobotDescription, ground: TrueGround) -> None:
+    def __init__(self, parameters: FallParameters, description: RobotDescription) -> None:
         self._parameters = parameters
-        self._ground = ground
         self._corners_sole = np.column_stack((description.sole_corners_sole, np.zeros(4)))
         self._samples_sole = _sole_samples(description)
         self._looked_at_support: tuple[WalkingPhase, int] | None = None
+        self._soles: tuple[Pose, ...] = ()
+        self._polygon: SupportPolygon | None = None
 
-    def check(self, output: WalkerOutput, status: WalkingStatus) -> str:
+    def check(self, output: WalkerOutput, status: WalkingStatus, ground: Ground) -> str:
         """Why the robot has fallen, in one sentence; empty while it has not.
 
         Args:
             output: what the robot does now, in the true world.
             status: what the walking controller does, its steps in the true world.
+            ground: the true ground as it is now.
         """
         swing = status.current_step.side if status.phase is WalkingPhase.SWING and status.current_step else None
         return (
             self._check_dcm(output, status, swing)
-            or (swing is not None and self._check_swing(swing, output.stance.sole(swing)))
-            or self._check_support(output, status, swing)
+            or self._check_swing(output, swing, ground)
+            or self._check_support(output, status, swing, ground)
         )
 
     def _check_dcm(self, output: WalkerOutput, status: WalkingStatus, swing: Side | None) -> str:
-        soles = [output.stance.sole(side) for side in Side if side is not swing]
-        soles += [status.imminent_stance.sole(side) for side in Side]
-        corners = np.concatenate([T_world_sole @ self._corners_sole for T_world_sole in soles])
-        # The hull is as far as the direction in which its nearest corner is farthest.
-        offsets = (corners - output.dcm_world)[:, :2]
-        outside = float(np.max(np.min(_DIRECTIONS @ offsets.T, axis=1)))
+        soles = tuple(output.stance.sole(side) for side in Side if side is not swing)
+        soles += tuple(status.imminent_stance.sole(side) for side in Side)
+        outside = self._support_polygon(soles).distance(output.dcm_world)
         if outside <= self._parameters.dcm_margin:
             return ""
         return f"the DCM is {100 * outside:.0f} cm outside the support polygon"
 
-    def _check_swing(self, side: Side, T_world_sole: Pose) -> str:
-        samples = T_world_sole @ self._samples_sole
-        depths = self._ground.heights(samples) - samples[:, 2]
-        deepest = int(np.argmax(depths))
-        if depths[deepest] <= self._parameters.swing_penetration:
-            return ""
-        x, y = samples[deepest, :2]
-        return f"the {side.value} sole swung {100 * depths[deepest]:.0f} cm into the ground at ({x:.2f}, {y:.2f})"
+    def _support_polygon(self, soles: tuple[Pose, ...]) -> SupportPolygon:
+        """The hull of the soles, made anew only when one has moved: feet rest longer than a control step."""
+        same = len(soles) == len(self._soles) and all(a is b for a, b in zip(soles, self._soles, strict=True))
+        if self._polygon is None or not same:
+            corners = [(T_world_sole @ self._corners_sole)[:, :2] for T_world_sole in soles]
+            self._soles, self._polygon = soles, SupportPolygon(corners)
+        return self._polygon
 
-    def _check_support(self, output: WalkerOutput, status: WalkingStatus, swing: Side | None) -> str:
+    def _check_swing(self, output: WalkerOutput, swing: Side | None, ground: Ground) -> str:
+        if swing is None:
+            return ""
+        limit = self._parameters.swing_penetration
+        samples = output.stance.sole(swing) @ self._samples_sole
+        # No point is deeper inside a box than it is below the ground; few are below, and only those cost time.
+        below = samples[ground.ground_height(samples[:, :2]) - samples[:, 2] > limit]
+        depths = ground.penetration(below)
+        if np.all(depths <= limit):
+            return ""
+        deepest = int(np.argmax(depths))
+        x, y = below[deepest, :2]
+        return f"the {swing.value} sole swung {100 * depths[deepest]:.0f} cm into the ground at ({x:.2f}, {y:.2f})"
+
+    def _check_support(self, output: WalkerOutput, status: WalkingStatus, swing: Side | None, ground: Ground) -> str:
         """Look once in the middle of each swing, and now and then while standing."""
         if swing is not None and status.current_step is not None:
             due = status.phase_elapsed >= 0.5 * status.phase_duration
@@ -99,14 +110,14 @@ class FallDetector:
             return ""
         self._looked_at_support = look
         for side in Side:
-            share = 1.0 if side is swing else self._supported_share(output.stance.sole(side))
+            share = 1.0 if side is swing else self._supported_share(output.stance.sole(side), ground)
             if share < self._parameters.support_share:
                 return f"only {100 * share:.0f} % of the {side.value} sole stood on ground"
         return ""
 
-    def _supported_share(self, T_world_sole: Pose) -> float:
+    def _supported_share(self, T_world_sole: Pose, ground: Ground) -> float:
         samples = T_world_sole @ self._samples_sole
-        gaps = np.abs(self._ground.heights(samples) - samples[:, 2])
+        gaps = np.abs(ground.ground_height(samples[:, :2]) - samples[:, 2])
         return float(np.mean(gaps <= self._parameters.support_tolerance))
 
 

@@ -16,7 +16,7 @@ import mujoco
 import numpy as np
 from dm_control import mjcf
 
-from sim_envs.courses.course import Course
+from sim_envs.courses import Course, Ground
 from sim_envs.robot import Biped, RobotDescription, qpos_from_configuration
 from sim_envs.sensors import DepthCamera, DepthCameraParameters, DepthNoise
 from sim_envs.worlds.arena import CourseArena
@@ -24,7 +24,6 @@ from sim_envs.worlds.box_motion import BoxMotions
 from sim_envs.worlds.depth_frames import DepthFrames
 from sim_envs.worlds.falls import FallDetector, FallParameters
 from sim_envs.worlds.state_drift import StateDrift, StateDriftParameters
-from sim_envs.worlds.true_ground import PIT, TrueGround
 from skills.footsteps.footstep import Footstep, Side, Stance
 from skills.geometry.camera import DepthImage
 from skills.geometry.pose import Array, Pose
@@ -75,8 +74,8 @@ class KinematicWorld:
         self.parameters = parameters or KinematicWorldParameters()
         self.robot = robot or RobotDescription()
         self._box_poses = {box.name: box.T_world_box for box in course.boxes}
-        self._box_index = {box.name: i for i, box in enumerate(course.boxes)}
-        self.ground = TrueGround(np.array([box.size for box in course.boxes]), tuple(self._box_poses.values()))
+        self._told_box_poses = {box.name: _as_tuples(box.T_world_box) for box in course.boxes}
+        self._ground: Ground | None = None
         self._motions = BoxMotions(course.events)
 
         self._arena, self._biped = CourseArena(course), Biped(self.robot)
@@ -89,7 +88,7 @@ class KinematicWorld:
 
         model = RobotModel(self.robot.mjcf_path, self.robot.sole_length, self.robot.sole_width)
         self._walker = KinematicWalker(model, walking or WalkingParameters(), self._start_stance())
-        self._falls = FallDetector(falls or FallParameters(), self.robot, self.ground)
+        self._falls = FallDetector(falls or FallParameters(), self.robot)
         self._drift = StateDrift(drift or StateDriftParameters())
         self._control_steps = 0
         self._asked_time = 0.0
@@ -106,6 +105,13 @@ class KinematicWorld:
     def model(self) -> mujoco.MjModel:
         """The compiled model, for renderers."""
         return self.physics.model.ptr
+
+    @property
+    def ground(self) -> Ground:
+        """The true ground, its boxes where they are now."""
+        if self._ground is None:
+            self._ground = Ground(self.course.boxes, tuple(self._box_poses.values()))
+        return self._ground
 
     @property
     def depth_camera(self) -> DepthCamera:
@@ -156,7 +162,7 @@ class KinematicWorld:
 
     def box_poses(self) -> dict[str, tuple[tuple[float, ...], tuple[float, ...]]]:
         """Position (3) [m] and quaternion wxyz (4) of every box of the course by name."""
-        return {name: (tuple(T.p), tuple(T.quaternion_wxyz)) for name, T in self._box_poses.items()}
+        return dict(self._told_box_poses)
 
     def move_box(self, name: str, T_world_box: Pose) -> None:
         """Put a box elsewhere; the sensors see it there from the next control step on.
@@ -167,7 +173,8 @@ class KinematicWorld:
         if name not in self._box_poses:
             raise ValueError(f"got box {name!r}, {self.course.name} has {', '.join(self._box_poses)}")
         self._box_poses[name] = T_world_box
-        self.ground.move(self._box_index[name], T_world_box)
+        self._told_box_poses[name] = _as_tuples(T_world_box)
+        self._ground = None
         self._arena.move_box(self.physics, name, T_world_box)
 
     def geom_poses(self) -> tuple[Array, Array]:
@@ -189,7 +196,7 @@ class KinematicWorld:
         output = self._walker.advance(1.0 / self.parameters.control_rate)
         self._pose_robot(output.q)
         if output.phase is not WalkingPhase.FALLEN:
-            failure = self._falls.check(output, self._walker.status())
+            failure = self._falls.check(output, self._walker.status(), self.ground)
             if failure:
                 self._walker.fall(failure)
 
@@ -204,8 +211,8 @@ class KinematicWorld:
         soles = []
         for side in Side:
             p = middle @ np.array((0.0, 0.5 * side.sign * self.parameters.stance_width, 0.0))
-            height = self.ground.heights(p[None])[0]
-            if height == PIT:
+            height = self.ground.ground_height(p[None, :2])[0]
+            if np.isinf(height):
                 raise ValueError(
                     f"course {self.course.name}: there is no ground under the {side.value} foot at the start"
                 )
@@ -225,3 +232,8 @@ class KinematicWorld:
         T_world_camera = T_world_body @ self.robot.T_body_camera
         T_world_camera_estimate = self._drift.T_estimate_world @ T_world_camera
         self._frames.take(self.time, self.physics.data.ptr, T_world_camera, T_world_camera_estimate)
+
+
+def _as_tuples(T: Pose) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Position and quaternion wxyz of a pose."""
+    return tuple(T.p.tolist()), tuple(T.quaternion_wxyz.tolist())
