@@ -14,7 +14,7 @@ import numpy as np
 
 from skills.footsteps.footstep import Side
 from skills.geometry.pose import Array
-from skills.walking.com_height import ComState, body_offset, nominal_height, plan_height, reach_cap
+from skills.walking.com_height import ComState, body_offset, nominal_height, plan_height, reach_band
 from skills.walking.dcm_plan import DcmPlan, advance_exactly, plan_from_present
 from skills.walking.gait import Gait
 from skills.walking.preview import PlannedPhase
@@ -115,7 +115,7 @@ class Balance:
         """Whether the legs reach at the commanded CoM height until the next landing."""
         horizon = phases[0].remaining + phases[1].remaining
         times = np.arange(0.0, horizon, 0.5 * self._parameters.height_knot)
-        cap = reach_cap(phases, self._plan, state, self._model, self._parameters, times)
+        _, cap = reach_band(phases, self._plan, state, self._model, self._parameters, times)
         return bool(np.all(cap >= nominal_height(phases, self.height, self._parameters, times)))
 
     def _com_state(self, p_world_pelvis: Array, yaw: float) -> ComState:

@@ -1,9 +1,9 @@
 """The height of the CoM over the next phases: as commanded where the legs can reach, lower where they cannot.
 
-The cap at each moment is the height at which the straightest planned leg spans from its hip to its ankle; legs count as
-mass at their ankles, because a leg that reaches out moves the pelvis away from the CoM. The height
-is a cubic B-spline under both: its control points are the lowest cap around them, smoothed, and it starts in the
-present motion, so that planning anew moves nothing suddenly.
+The CoM is as low at each moment as the straightest planned leg spans from hip to ankle, and as high as the most bent
+one needs; legs count as mass at their ankles, because a leg that reaches out moves the pelvis away from the CoM. The
+height is a cubic B-spline whose control points keep the strictest of these bounds around them, smoothed, and it starts
+in the present motion, so that planning anew moves nothing suddenly.
 """
 
 from __future__ import annotations
@@ -51,12 +51,14 @@ def plan_height(
     spacing = parameters.height_knot
     count = int(np.ceil(parameters.height_horizon / spacing))
     times = np.arange(count * _SAMPLES_PER_KNOT + 1) * spacing / _SAMPLES_PER_KNOT
-    cap = reach_cap(phases, dcm_plan, state, model, parameters, times)
+    band = reach_band(phases, dcm_plan, state, model, parameters, times)
     nominal = nominal_height(phases, float(state.com[2]), parameters, times)
     reach = 4 * _SAMPLES_PER_KNOT
-    padded = np.pad(cap, reach, mode="edge")
-    lowest = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1).min(axis=1)
-    target = np.minimum(nominal, lowest)[::_SAMPLES_PER_KNOT]
+    around = np.lib.stride_tricks.sliding_window_view(
+        np.pad(band, ((0, 0), (reach, reach)), mode="edge"), 2 * reach + 1, 1
+    )
+    floor, cap = around[0].max(axis=1), around[1].min(axis=1)
+    target = np.minimum(np.maximum(nominal, floor), cap)[::_SAMPLES_PER_KNOT]
     target = np.convolve(np.pad(target, 2, mode="edge"), _SMOOTHING, mode="valid")
     first = controls_of_motion(state.com[2:], np.array([state.velocity]), np.array([state.acceleration]), spacing)
     # Knots -1, 0 and 1 are the present motion; the distance of knot 1 from its target fades over those behind.
@@ -78,7 +80,7 @@ def nominal_height(phases: Sequence[PlannedPhase], height: float, parameters: Wa
     return heights
 
 
-def reach_cap(
+def reach_band(
     phases: Sequence[PlannedPhase],
     dcm_plan: DcmPlan,
     state: ComState,
@@ -86,9 +88,9 @@ def reach_cap(
     parameters: WalkingParameters,
     times: Array,
 ) -> Array:
-    """Greatest CoM height at which both legs reach their ankles, (M,) [m]; times increase from 0 on [s]."""
+    """Least and greatest CoM height at which both legs fit, (2, M) [m]; times (M,) increase from 0 on [s]."""
     com = dcm_plan.com(times, state.com[:2])
-    caps = np.empty(len(times))
+    band = np.empty((2, len(times)))
     start, yaw = 0.0, state.yaw
     for index, phase in enumerate(phases):
         end = start + phase.remaining if index + 1 < len(phases) else np.inf
@@ -97,9 +99,9 @@ def reach_cap(
             local = times[chosen] - start
             turned = wrap_angle(phase.yaw_end - yaw) * np.clip(local / max(phase.remaining, 1e-6), 0.0, 1.0)
             ankles = {side: phase.points(side, model.legs[side].p_sole_ankle, phase.elapsed + local) for side in Side}
-            caps[chosen] = _leg_cap(ankles, com[chosen], yaw + turned, state, model, parameters.straightest_knee)
+            band[:, chosen] = _legs_band(ankles, com[chosen], yaw + turned, state, model, parameters)
         start, yaw = end, phase.yaw_end
-    return caps
+    return band
 
 
 def body_offset(com: Array, ankles: Mapping[Side, Array], p_pelvis: Array, yaw: float, model: RobotModel) -> Array:
@@ -109,20 +111,27 @@ def body_offset(com: Array, ankles: Mapping[Side, Array], p_pelvis: Array, yaw: 
     return rotation_z(-yaw) @ ((model.mass * com - pulled) / (model.mass - share) - p_pelvis)
 
 
-def _leg_cap(
-    ankles: Mapping[Side, Array], com: Array, yaw: Array, state: ComState, model: RobotModel, knee: float
+def _legs_band(
+    ankles: Mapping[Side, Array],
+    com: Array,
+    yaw: Array,
+    state: ComState,
+    model: RobotModel,
+    parameters: WalkingParameters,
 ) -> Array:
-    """The lower of both legs' caps, (M,), from ankles (M, 3), CoM (M, 2) and heading (M,)."""
+    """Least and greatest CoM height for both legs, (2, M), from ankles (M, 3), CoM (M, 2) and heading (M,)."""
     share = sum(model.legs[side].mass_at_ankle for side in Side)
     pulled = sum((model.legs[side].mass_at_ankle * ankles[side] for side in Side), np.zeros((len(com), 3)))
     body = (model.mass * com - pulled[:, :2]) / (model.mass - share)
     c, s = np.cos(yaw), np.sin(yaw)
-    pelvis = np.full(len(com), np.inf)
-    for side in Side:
+    spans = np.empty((2, 2, len(com)))
+    for index, side in enumerate(Side):
         leg = model.legs[side]
         offset = leg.p_pelvis_hip - state.p_pelvis_body
         dx = body[:, 0] + c * offset[0] - s * offset[1] - ankles[side][:, 0]
         dy = body[:, 1] + s * offset[0] + c * offset[1] - ankles[side][:, 1]
-        upright = np.sqrt(np.maximum(0.0, leg.length(knee) ** 2 - dx * dx - dy * dy))
-        pelvis = np.minimum(pelvis, ankles[side][:, 2] + upright - leg.p_pelvis_hip[2])
+        lengths = np.array([[leg.length(parameters.most_bent_knee)], [leg.length(parameters.straightest_knee)]])
+        upright = np.sqrt(np.maximum(0.0, lengths**2 - dx * dx - dy * dy))
+        spans[index] = ankles[side][:, 2] + upright - leg.p_pelvis_hip[2]
+    pelvis = np.stack((spans[:, 0].max(axis=0), spans[:, 1].min(axis=0)))
     return ((pelvis + state.p_pelvis_body[2]) * (model.mass - share) + pulled[:, 2]) / model.mass

@@ -17,6 +17,7 @@ from skills.walking.preview import PlannedPhase, phases_of_steps, resting_phase,
 from skills.walking.step_queue import accepted_steps
 from skills.walking.support_polygon import SupportPolygon, foothold_corners
 from skills.walking.swing_trajectory import SwingTrajectory
+from skills.walking.uniform_spline import minimum_jerk_at
 from skills.walking.walking_parameters import WalkingParameters
 from skills.walking.walking_state import StepEvent, StepEventKind, WalkingPhase
 
@@ -46,6 +47,13 @@ class Gait:
         self._swing: SwingTrajectory | None = None
         self._heel: HeelLift | None = None
         self._update_support()
+
+    @property
+    def last_sequence_id(self) -> int:
+        """Sequence id of the step under way or last made; -1 before the first."""
+        if self.step is not None:
+            return self.step.sequence_id
+        return -1 if self._newest_id is None else self._newest_id
 
     def accept(self, steps: Sequence[Footstep]) -> None:
         """Replace the queue, and the step to come where its foot has not lifted and the plan begins with that foot.
@@ -92,6 +100,13 @@ class Gait:
         if self._heel is not None and self._heel.lifted(self.elapsed):
             return self.stance.with_sole(self.step.side, self._heel.pose(self.elapsed))
         return self.stance
+
+    def freedom_in_air(self) -> float:
+        """How far the swinging sole may give up its orientation: 0 at lift-off and landing, 1 in between."""
+        if self._swing is None:
+            return 0.0
+        share = self.elapsed / self.duration
+        return minimum_jerk_at(min(share, 1.0 - share) / self._parameters.swing_strict)
 
     def support(self) -> SupportPolygon:
         """Where the CoP may be: flat feet, and the toe of a trailing foot whose heel has lifted."""

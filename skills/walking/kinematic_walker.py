@@ -32,6 +32,7 @@ from skills.walking.walking_state import (
 
 _FIRST_ITERATIONS = 100
 _INSTANT = 1e-9
+_LEVEL = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,8 +134,7 @@ class KinematicWalker:
         self._time += left
         soles = self._output.stance
         if not self._failure:
-            soles = self._gait.soles()
-            self._move_joints(soles, dt)
+            soles = self._move_joints(self._gait.soles(), dt)
         self._output = self._make_output(soles)
         self._log.append(_sample(self._output))
         return self._output
@@ -156,6 +156,7 @@ class KinematicWalker:
             last_side=gait.last_side if gait.step is None else gait.step.side,
             paused=self._paused,
             failure=self._failure,
+            last_sequence_id=gait.last_sequence_id,
         )
 
     def state(self) -> RobotState:
@@ -214,9 +215,11 @@ class KinematicWalker:
     def _replan(self) -> None:
         self._balance.replan(self._q[:3], self._yaw)
 
-    def _move_joints(self, soles: Stance, dt: float) -> None:
-        """Solve for the configuration that has the CoM and the soles where they should be now."""
-        p, pin_model = self._parameters, self._model.pin_model
+    def _move_joints(self, soles: Stance, dt: float) -> Stance:
+        """Solve for the configuration that has the CoM and the soles where they should be now; where the soles are."""
+        p, pin_model, gait = self._parameters, self._model.pin_model, self._gait
+        swinging = gait.step.side if gait.step is not None and gait.phase is WalkingPhase.SWING else None
+        self._ik.free_orientation(swinging, gait.freedom_in_air())
         self._yaw = self._heading()
         # From the motion continued with its present acceleration, one Newton step is enough nearly always.
         guess = pin.integrate(pin_model, self._q, (2.0 * self._v - self._v_before) * dt)
@@ -226,9 +229,12 @@ class KinematicWalker:
         failure = _out_of_reach(solution, p)
         if failure:
             self.fall(failure)
-            return
+            return self._output.stance
         self._v_before, self._v = self._v, pin.difference(pin_model, self._q, solution.q) / dt
         self._q, self._height_error = solution.q, solution.height_error
+        if swinging is not None and solution.tilt_error > _LEVEL:
+            soles = soles.with_sole(swinging, self._model.sole_pose(self._q, swinging))
+        return soles
 
     def _heading(self) -> float:
         """Heading of the pelvis now: turns in the swing to the mean of the feet [rad]."""

@@ -28,6 +28,9 @@ class WalkingParameters:
     straightest_knee: float = parameter(
         0.45, unit="rad", meaning="least knee angle planned for", minimum=0.0, maximum=1.0
     )
+    most_bent_knee: float = parameter(
+        2.2, unit="rad", meaning="greatest knee angle planned for", minimum=1.0, maximum=3.0
+    )
     heel_lift: float = parameter(0.6, unit="rad", meaning="largest pitch of a trailing foot about its toe", minimum=0.0)
     heel_lift_start: float = parameter(0.35, unit="1", meaning="share of the transfer before heels lift", maximum=0.9)
     heel_lift_stages: int = parameter(4, unit="1", meaning="heel lifts tried between none and the largest", minimum=1)
@@ -64,6 +67,9 @@ class WalkingParameters:
     swing_normal: float = parameter(0.03, unit="m", meaning="way along the surface normal at both ends", minimum=0.001)
     swing_level: float = parameter(0.5, unit="1", meaning="share of the swing when the sole is level", minimum=0.1)
     swing_aligned: float = parameter(0.9, unit="1", meaning="share of the swing when it has the foothold's tilt")
+    swing_strict: float = parameter(
+        0.15, unit="1", meaning="share of the swing, at both ends, with an exact orientation", minimum=0.01, maximum=0.5
+    )
 
     knee_bend: float = parameter(1.0, unit="rad", meaning="knee angle that standing is solved from", minimum=0.2)
     pelvis_pitch: float = parameter(0.03, unit="rad", meaning="forward lean of the pelvis", minimum=-0.5, maximum=0.5)
