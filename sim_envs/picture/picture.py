@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from sim_envs.picture.light import Casters, LightParameters, light_on, sky_directions, sun_directions
 from sim_envs.picture.overlays import Layer, Overlay, project
 from sim_envs.picture.surfaces import FLOOR, Surfaces, floor_under, linear, srgb, surfaces_of, together
-from sim_envs.sensors import geom_mesh, looking, rasterize_faces
+from sim_envs.sensors import geom_mesh, rasterize_faces
 from skills.geometry.camera import PinholeCamera
 from skills.geometry.pose import Array, Pose
 from skills.parameters import parameter, parameters
@@ -28,6 +28,7 @@ Image = NDArray[np.float32]
 
 _SEGMENTS, _CASTER_SEGMENTS = 96, 24  # around a round shape, seen and as a caster of shadows
 _SUN_COLOR, _SKY_COLOR, _BOUNCE_COLOR = (1.0, 0.94, 0.85), (0.84, 0.92, 1.0), (1.0, 0.97, 0.92)
+_EXPOSURE = np.float32(1.6)
 _SHADOW_REACH = 9.0  # shadows are looked for this far around the middle of what is seen [m]
 _SHININESS, _HIGHLIGHT, _RIM = 40, 8.0, 2.0
 _JUMP = 0.04  # relative jump in depth that is a silhouette
@@ -46,23 +47,11 @@ class PictureStyle:
     backdrop_bottom: tuple[float, float, float] = parameter(
         (0.965, 0.97, 0.975), unit="1", minimum=0.0, maximum=1.0, meaning="backdrop at the bottom: red, green, blue"
     )
-    sun: float = parameter(1.0, unit="1", minimum=0.0, maximum=10.0, meaning="brightness of the sun")
+    sun: float = parameter(1.15, unit="1", minimum=0.0, maximum=10.0, meaning="brightness of the sun")
     sky: float = parameter(0.42, unit="1", minimum=0.0, maximum=10.0, meaning="brightness of the sky")
-    bounce: float = parameter(0.10, unit="1", minimum=0.0, maximum=10.0, meaning="brightness of light from below")
+    bounce: float = parameter(0.14, unit="1", minimum=0.0, maximum=10.0, meaning="brightness of light from below")
     gloss: float = parameter(0.10, unit="1", minimum=0.0, maximum=1.0, meaning="strength of highlights")
     outline: float = parameter(0.22, unit="1", minimum=0.0, maximum=1.0, meaning="how much silhouettes are darkened")
-
-
-def picture_camera(width: int, height: int, *, vertical_fov_deg: float = 32.0) -> PinholeCamera:
-    """A camera for pictures; a narrow view keeps verticals upright."""
-    focal = 0.5 * height / np.tan(0.5 * np.deg2rad(vertical_fov_deg))
-    return PinholeCamera(width, height, float(focal), float(focal), 0.5 * (width - 1), 0.5 * (height - 1), 0.05, 80.0)
-
-
-def orbit_view(target_world: Sequence[float] | Array, *, distance: float, azimuth: float, elevation: float) -> Pose:
-    """T_world_camera of a viewer around a target: azimuth of the viewer as seen from it, and height angle [m, rad]."""
-    away = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
-    return looking(np.asarray(target_world) + distance * away, pitch=elevation, yaw=azimuth + np.pi)
 
 
 def picture_of(
@@ -175,8 +164,8 @@ def _shine(points: Image, normals: Image, sun: Image, sky: Image, toward_sun: Ar
 
 
 def _tone(light: Image) -> Image:
-    """Squeeze light without bound into what a screen can show, as film does (Narkowicz, 2015)."""
-    return np.minimum(light * (2.51 * light + 0.03) / (light * (2.43 * light + 0.59) + 0.14), np.float32(1))
+    """Squeeze light without bound into what a screen can show; dark tones stay in proportion."""
+    return 1 - np.exp(-_EXPOSURE * light)
 
 
 def _backdrop(camera: PinholeCamera, style: PictureStyle) -> Image:

@@ -63,7 +63,7 @@ def surfaces_of(
     order = np.argsort(geoms, kind="stable")
     visible, starts = np.unique(geoms[order], return_index=True)
     colors = np.empty_like(points)
-    for geom, rows in zip(visible, np.split(order, starts[1:]), strict=True):
+    for geom, rows in zip(visible, np.split(order, starts)[1:], strict=True):
         colors[rows] = _color(model, geom)
         if mujoco.mjtGeom(int(model.geom_type[geom])) in _NORMALS:
             R = geom_rotations[geom].astype(np.float32)

@@ -61,7 +61,9 @@ def rasterize_faces(
 ) -> Raster:
     """Depth, and which face is seen, in each pixel; takes what `rasterize_depth` takes."""
     face = np.full((camera.height, camera.width), -1, dtype=np.int32)
-    return Raster(_raster(mesh, geom_positions, geom_rotations, camera, T_world_camera, face), face)
+    depth = _raster(mesh, geom_positions, geom_rotations, camera, T_world_camera, face)
+    face[depth == 0] = -1
+    return Raster(depth, face)
 
 
 def _raster(
