@@ -62,7 +62,7 @@ def _text(value: Any) -> str:
         return "true" if value else "false"
     if isinstance(value, str):
         return _text_of_str(value)
-    return repr(value)
+    return repr(float(value)) if isinstance(value, float) else repr(value)
 
 
 def _text_of_str(value: str) -> str:

@@ -1,0 +1,23 @@
+"""The leaves of look-and-step: thin, each calls one skill or one command of the robot."""
+
+from behaviors.leaves.follow_path import FindSubGoal, GoalReached, PlanBodyPath, WaitForGoal
+from behaviors.leaves.guards import GroundFresh, RobotFallen
+from behaviors.leaves.look import ExtractRegions, RememberGround
+from behaviors.leaves.plan_steps import PlanFootsteps
+from behaviors.leaves.walk import PauseWalking, SendFootsteps, WaitForSwing, WaitUntilStanding
+
+__all__ = [
+    "ExtractRegions",
+    "FindSubGoal",
+    "GoalReached",
+    "GroundFresh",
+    "PauseWalking",
+    "PlanBodyPath",
+    "PlanFootsteps",
+    "RememberGround",
+    "RobotFallen",
+    "SendFootsteps",
+    "WaitForGoal",
+    "WaitForSwing",
+    "WaitUntilStanding",
+]

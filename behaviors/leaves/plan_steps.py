@@ -1,0 +1,124 @@
+"""Plan the next footsteps toward the sub-goal, from the stance that the robot is about to have."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+from py_trees.common import Status
+
+from behaviors.leaf import Call, SkillLeaf, SkillParameters
+from behaviors.ports import Input, Output
+from behaviors.registry import leaf
+from skills.body_path import SubGoal
+from skills.footsteps import (
+    FootstepParameters,
+    FootstepPlan,
+    Side,
+    Stance,
+    TerrainParameters,
+    plan_footsteps,
+    plan_from_stance,
+    terrain_ahead,
+)
+from skills.parameters import parameter, parameters
+from skills.regions import PlanarRegions
+from skills.walking import WalkingPhase, WalkingStatus
+
+
+@parameters
+class PlanFootstepsParameters(SkillParameters):
+    """How long a plan may take."""
+
+    latency: float = parameter(0.2, unit="s", meaning="robot time until a plan is delivered", minimum=0.0, maximum=60.0)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanRequest:
+    """All that a plan depends on.
+
+    Attributes:
+        ground: planar regions around the robot.
+        sub_goal: where the next steps should lead.
+        stance: the stance from which the first step is made.
+        first_side: the foot that makes it; None where either may.
+        plan_id: of the plan.
+        first_sequence_id: place of the first step in the walk.
+        reference: the steps planned before that have not begun; None where there are none.
+        footsteps, terrain: parameters.
+    """
+
+    ground: PlanarRegions
+    sub_goal: SubGoal
+    stance: Stance
+    first_side: Side | None
+    plan_id: int
+    first_sequence_id: int
+    reference: FootstepPlan | None
+    footsteps: FootstepParameters
+    terrain: TerrainParameters
+
+
+def plan_on_request(request: PlanRequest) -> FootstepPlan:
+    """Draw the ground, then plan on it."""
+    terrain = terrain_ahead(request.ground, request.stance, request.sub_goal, request.footsteps, request.terrain)
+    ids = {"plan_id": request.plan_id, "first_sequence_id": request.first_sequence_id}
+    if request.first_side is None:
+        return plan_from_stance(
+            terrain, request.stance, request.sub_goal, request.footsteps, reference=request.reference, **ids
+        )
+    return plan_footsteps(
+        terrain,
+        request.stance,
+        request.first_side,
+        request.sub_goal,
+        request.footsteps,
+        reference=request.reference,
+        **ids,
+    )
+
+
+@leaf
+class PlanFootsteps(SkillLeaf):
+    """Plans at least three steps by A* over the regions; partial plans count, no step at all is a failure."""
+
+    Parameters = PlanFootstepsParameters
+    ground = Input(PlanarRegions, "planar regions around the robot")
+    sub_goal = Input(SubGoal, "where the next steps should lead")
+    plan = Output(FootstepPlan, "the next footsteps")
+
+    def setup(self) -> None:
+        """No plan has been made yet."""
+        self._plans = 0
+
+    def request(self) -> Call | Status:
+        """From the imminent stance with the other foot first; with either foot when the robot stands."""
+        status = self.context.robot.status()
+        standing = status.phase is WalkingPhase.STANDING or status.last_side is None
+        request = PlanRequest(
+            ground=self.ground,
+            sub_goal=self.sub_goal,
+            stance=status.imminent_stance,
+            first_side=None if standing or status.last_side is None else status.last_side.opposite,
+            plan_id=self._plans,
+            first_sequence_id=status.last_sequence_id + 1,
+            reference=None if standing else self._not_begun(status),
+            footsteps=self.context.parameters["footsteps"],
+            terrain=self.context.parameters["terrain"],
+        )
+        self._plans += 1
+        return self.call(plan_on_request, request)
+
+    def receive(self, result: FootstepPlan) -> Status:
+        """Hand an executable plan on."""
+        if not result.steps:
+            return self.failed(result.reason)
+        self.plan = result
+        return self.succeeded(result.reason)
+
+    def _not_begun(self, status: WalkingStatus) -> FootstepPlan | None:
+        """The last plan without the steps that have begun."""
+        if self.plan is None:
+            return None
+        steps = tuple(step for step in self.plan.steps if step.sequence_id > status.last_sequence_id)
+        return dataclasses.replace(self.plan, steps=steps) if steps else None

@@ -1,0 +1,76 @@
+"""`lookstep run`: one walk."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from lookstep.commands.report import Progress, print_summary
+from lookstep.errors import UserError
+from lookstep.run import EXECUTORS, WORLDS, RunOptions, run_walk
+from lookstep.summary import Outcome
+
+NAME = "run"
+HELP = "walk one course and print the figures"
+EXAMPLE = "lookstep run --course rough --seed 3 --record walk.rrd --out runs/rough_3"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of a run."""
+    defaults = RunOptions()
+    parser.add_argument("--tree", default=defaults.tree, help="shipped tree or YAML file (default: %(default)s)")
+    parser.add_argument(
+        "--course", default=defaults.course, help="generator, shipped course or YAML file (%(default)s)"
+    )
+    parser.add_argument("--seed", type=int, default=defaults.seed, help="seed of course and noise (%(default)s)")
+    parser.add_argument("--world", choices=WORLDS, default=defaults.world, help="simulation (%(default)s)")
+    parser.add_argument("--executor", choices=EXECUTORS, default=defaults.executor, help="how skills run (%(default)s)")
+    parser.add_argument("--speed", type=float, help="pace: robot time per wall time (as fast as possible; realtime: 1)")
+    parser.add_argument("--goal", type=_goal, metavar="X,Y,YAW", help="goal in metres and radians (the course's own)")
+    parser.add_argument("--time-limit", type=float, default=defaults.time_limit, help="robot time [s] (%(default)s)")
+    parser.add_argument("--preset", help="shipped preset or YAML file, such as paper")
+    parser.add_argument(
+        "--set",
+        dest="assignments",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="one parameter: subject.key=value, course.option=value or /node/path.key=value; may be repeated",
+    )
+    parser.add_argument("--record", type=Path, metavar="RRD", help="write a recording for the rerun viewer")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json and trace.jsonl into this folder")
+    parser.add_argument("--json", type=Path, metavar="FILE", help="write the summary here as well")
+
+
+def execute(options: argparse.Namespace) -> int:
+    """Walk; 0 when the goal was reached."""
+    run_options = RunOptions(
+        tree=options.tree,
+        course=options.course,
+        seed=options.seed,
+        world=options.world,
+        executor=options.executor,
+        speed=options.speed,
+        goal=options.goal,
+        time_limit=options.time_limit,
+        preset=options.preset,
+        assignments=tuple(options.assignments),
+        record=options.record,
+        out=options.out,
+    )
+    if options.json is not None and not options.json.parent.is_dir():
+        raise UserError(f"--json {options.json}: the folder {options.json.parent} does not exist")
+    with Progress() as progress:
+        summary = run_walk(run_options, progress)
+    print_summary(summary, run_options)
+    if options.json is not None:
+        summary.write(options.json)
+    return 0 if summary.outcome is Outcome.GOAL_REACHED else 1
+
+
+def _goal(text: str) -> tuple[float, float, float]:
+    try:
+        x, y, yaw = (float(part) for part in text.split(","))
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"got {text!r}, needs X,Y,YAW such as 4.0,0,0") from None
+    return x, y, yaw

@@ -1,0 +1,200 @@
+"""Every parameter of a run, gathered from the classes, the config files, a preset and the command line.
+
+Precedence, weakest first: default of the class < `config/<subject>.yaml` < preset < `--set subject.key=value`. Tree
+nodes and `--set /node/path.key=value` override parameters of single leaves; the tree loader applies those.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, get_type_hints
+
+from sim_envs.judge import JudgeParameters
+from sim_envs.robot import RobotDescription
+from sim_envs.sensors import DepthCameraParameters, DepthNoise
+from sim_envs.worlds import FallParameters, KinematicWorldParameters
+from skills.body_path import SubGoalParameters
+from skills.footsteps import FootstepParameters, TerrainParameters
+from skills.regions import MemoryParameters, RegionParameters
+from skills.walking import WalkingParameters
+from strict_yaml import (
+    Entry,
+    Kind,
+    Location,
+    Node,
+    Problem,
+    YamlError,
+    dump_parameters,
+    load_document,
+    nearest,
+    parse_document,
+    read_dataclass,
+    shipped_folder,
+)
+
+_COURSE = "course."
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """The parameters of every subject, validated.
+
+    Attributes: one typed class a subject; each states default, unit, range and meaning of its parameters.
+    """
+
+    robot: RobotDescription
+    camera: DepthCameraParameters
+    noise: DepthNoise
+    world: KinematicWorldParameters
+    falls: FallParameters
+    judge: JudgeParameters
+    walking: WalkingParameters
+    regions: RegionParameters
+    region_memory: MemoryParameters
+    sub_goal: SubGoalParameters
+    footsteps: FootstepParameters
+    terrain: TerrainParameters
+
+    def by_subject(self) -> dict[str, Any]:
+        """The typed parameters by the name of their subject."""
+        return {subject: getattr(self, subject) for subject in SUBJECTS}
+
+
+@dataclass(frozen=True, slots=True)
+class Assignments:
+    """What `--set` was given, by what it is for.
+
+    Attributes:
+        subjects: `subject.key=value`.
+        course: options of the course's generator by name.
+        nodes: values of `/node/path.key=value` by path and key.
+    """
+
+    subjects: tuple[str, ...] = ()
+    course: Mapping[str, Any] = dataclasses.field(default_factory=dict)
+    nodes: Mapping[str, Mapping[str, Any]] = dataclasses.field(default_factory=dict)
+
+
+SUBJECTS: Mapping[str, type] = get_type_hints(Configuration)
+
+
+def load_configuration(preset: str | None = None, assignments: Iterable[str] = ()) -> Configuration:
+    """Read the shipped config, a preset (a shipped name or a file) and `subject.key=value` assignments.
+
+    Raises:
+        YamlError: with every problem found, each at its place; an assignment's place is `--set`.
+    """
+    problems: list[Problem] = []
+    layers = [_config_files(), _preset(preset, problems), _assignments(assignments, problems)]
+    instances = {}
+    for subject, cls in SUBJECTS.items():
+        merged = _merge([layer[subject] for layer in layers if subject in layer], subject)
+        instances[subject] = read_dataclass(merged, cls, problems, subject)
+    if problems:
+        raise YamlError(problems)
+    return Configuration(**instances)
+
+
+def split_assignments(assignments: Iterable[str]) -> Assignments:
+    """Sort `--set` assignments by what they are for."""
+    subjects: list[str] = []
+    course: dict[str, Any] = {}
+    nodes: dict[str, dict[str, Any]] = {}
+    for text in assignments:
+        target, _, value = text.partition("=")
+        if not target.startswith((_COURSE, "/")):
+            subjects.append(text)
+            continue
+        owner, _, key = target.strip().rpartition(".")
+        parsed = parse_document(value, f"--set {text}").value
+        if target.startswith("/"):
+            nodes.setdefault(owner, {})[key] = parsed
+        else:
+            course[key] = parsed
+    return Assignments(tuple(subjects), course, nodes)
+
+
+def preset_names() -> tuple[str, ...]:
+    """The shipped presets."""
+    return tuple(sorted(path.stem for path in (shipped_folder("config") / "presets").glob("*.yaml")))
+
+
+def _config_files() -> dict[str, Node]:
+    folder = shipped_folder("config")
+    return {subject: load_document(folder / f"{subject}.yaml") for subject in SUBJECTS}
+
+
+def _preset(preset: str | None, problems: list[Problem]) -> dict[str, Node]:
+    if preset is None:
+        return {}
+    names = preset_names()
+    path = shipped_folder("config") / "presets" / f"{preset}.yaml" if preset in names else Path(preset)
+    if preset not in names and path.suffix != ".yaml":
+        place = Location("--preset", 1, 1)
+        message = f'unknown preset "{preset}"{nearest(preset, names)} (presets: {", ".join(names)}, or a .yaml file)'
+        raise YamlError([Problem(place, message)])
+    layer = {}
+    for subject, location, node in load_document(path).entries:
+        if subject in SUBJECTS:
+            layer[subject] = node
+        else:
+            problems.append(_unknown_subject(subject, location))
+    return layer
+
+
+def _assignments(assignments: Iterable[str], problems: list[Problem]) -> dict[str, Node]:
+    layer: dict[str, Node] = {}
+    for text in assignments:
+        place = Location(f"--set {text}", 1, 1)
+        key, equals, value = text.partition("=")
+        subject, dot, name = key.strip().partition(".")
+        if not (equals and dot and name):
+            problems.append(Problem(place, "needs the form subject.key=value, such as footsteps.max_step_height=0.3"))
+        elif subject not in SUBJECTS:
+            problems.append(_unknown_subject(subject, place))
+        else:
+            entry = Entry(name, place, dataclasses.replace(parse_document(value, place.file), location=place))
+            layer[subject] = (
+                _merge([layer[subject], _mapping(place, (entry,))], subject)
+                if subject in layer
+                else (_mapping(place, (entry,)))
+            )
+    return layer
+
+
+def _unknown_subject(subject: str, location: Location) -> Problem:
+    allowed = ", ".join(SUBJECTS)
+    return Problem(location, f'unknown subject "{subject}"{nearest(subject, SUBJECTS)} (subjects: {allowed})')
+
+
+def _mapping(location: Location, entries: tuple[Entry, ...]) -> Node:
+    return Node(Kind.MAPPING, location, entries=entries)
+
+
+def _merge(nodes: list[Node], subject: str) -> Node:
+    """One mapping in which later nodes win key by key; a node that is no mapping stands alone, to be told as wrong."""
+    entries: dict[str, Entry] = {}
+    for node in nodes:
+        if node.kind is not Kind.MAPPING:
+            return node
+        entries.update({entry.key: entry for entry in node.entries})
+    location = nodes[-1].location if nodes else Location(subject, 1, 1)
+    return _mapping(location, tuple(entries.values()))
+
+
+def config_files() -> dict[str, str]:
+    """The text of every shipped config file by its name, as the classes make it."""
+    return {f"{subject}.yaml": f"# {_first_line(cls)}\n{dump_parameters(cls)}" for subject, cls in SUBJECTS.items()}
+
+
+def _first_line(cls: type) -> str:
+    return (cls.__doc__ or "").strip().splitlines()[0]
+
+
+if __name__ == "__main__":
+    # Writes config/*.yaml anew after a parameter class has changed; a test holds the files to the classes.
+    for _name, _text in config_files().items():
+        (shipped_folder("config") / _name).write_text(_text)

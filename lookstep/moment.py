@@ -1,0 +1,45 @@
+"""One tick of a run as those who watch it see it: the recording, the statistics and the progress bar."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from behaviors import JobRecord, LogLine, Tree
+from sim_envs.worlds import KinematicWorld
+from skills.walking import ControlSample, RobotState, StepEvent, WalkingStatus
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Moment:
+    """What happened in one tick.
+
+    Attributes:
+        time: robot time [s].
+        world: the simulated world, to be read only.
+        tree: the behavior tree after its tick, to be read only.
+        state: the true state of the robot.
+        status: what the walking controller is doing.
+        events: step events since the last tick.
+        samples: control-rate samples since the last tick.
+        jobs: computations that ended in this tick.
+        log: lines for the operator.
+    """
+
+    time: float
+    world: KinematicWorld
+    tree: Tree
+    state: RobotState
+    status: WalkingStatus
+    events: tuple[StepEvent, ...]
+    samples: tuple[ControlSample, ...]
+    jobs: tuple[JobRecord, ...]
+    log: tuple[LogLine, ...]
+
+
+class Observer(Protocol):
+    """Watches a run without changing it."""
+
+    def observe(self, moment: Moment) -> None:
+        """Take note of one tick."""
+        ...

@@ -1,0 +1,50 @@
+"""The layout in which a recording opens: the walk in 3D, what the robot sees, its tree, its timing, its reasons."""
+
+from __future__ import annotations
+
+import rerun.blueprint as rrb
+
+TIMELINE = "robot_time"
+
+
+def default_blueprint(start: tuple[float, float], goal: tuple[float, float]) -> rrb.Blueprint:
+    """The layout for a walk from start to goal, both (x, y) in the world [m]."""
+    scene = rrb.Spatial3DView(
+        name="Walk",
+        origin="/world",
+        background=rrb.Background(kind=rrb.components.BackgroundKind.GradientDark),
+        line_grid=rrb.LineGrid3D(visible=False),
+        eye_controls=rrb.EyeControls3D(
+            kind=rrb.components.Eye3DKind.Orbital,
+            position=(start[0] - 2.2, start[1] - 3.0, 2.6),
+            look_target=(start[0] + 0.9, start[1], 0.5),
+            tracking_entity="/world/robot/pelvis",
+        ),
+    )
+    tree = rrb.StateTimelineView(name="Behavior tree", origin="/tree")
+    eyes = rrb.Horizontal(
+        rrb.Spatial2DView(name="Depth image", origin="/camera/depth"),
+        rrb.Spatial2DView(name="Regions extracted", origin="/camera/regions"),
+    )
+    plots = rrb.Tabs(
+        rrb.TimeSeriesView(name="Planning time [ms]", origin="/timing/PlanFootsteps"),
+        rrb.TimeSeriesView(name="Region time [ms]", origin="/timing/ExtractRegions"),
+        rrb.TimeSeriesView(name="DCM error [mm]", origin="/control/dcm_error"),
+        rrb.TimeSeriesView(name="Sideways motion [m]", origin="/control/lateral"),
+        name="Plots",
+    )
+    reasons = rrb.Tabs(
+        rrb.TextLogView(name="Reasons", origin="/log"),
+        rrb.TextDocumentView(name="About this run", origin="/about"),
+    )
+    return rrb.Blueprint(
+        rrb.Horizontal(
+            rrb.Vertical(scene, tree, row_shares=[3, 2]),
+            rrb.Vertical(eyes, plots, reasons, row_shares=[3, 3, 3]),
+            column_shares=[3, 2],
+        ),
+        rrb.BlueprintPanel(state="collapsed"),
+        rrb.SelectionPanel(state="collapsed"),
+        rrb.TimePanel(state="collapsed", timeline=TIMELINE),
+        auto_views=False,
+    )

@@ -1,0 +1,41 @@
+"""Sensor images made small enough that a minute of walking stays a small file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import cv2
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from skills.geometry import DepthImage
+
+_WIDTH = 512
+_JPEG_QUALITY = 85
+_MILLIMETRES_PER_METRE = 1000.0
+
+
+def encoded_depth(image: DepthImage) -> rr.EncodedDepthImage:
+    """A depth image as a PNG of millimetres, thinned by taking every nth pixel: depths must not be averaged."""
+    stride = max(1, image.camera.width // _WIDTH)
+    millimetres = np.round(image.depth[::stride, ::stride] * _MILLIMETRES_PER_METRE).astype(np.uint16)
+    return rr.EncodedDepthImage(
+        _encode(".png", millimetres), media_type="image/png", meter=_MILLIMETRES_PER_METRE, colormap="turbo"
+    )
+
+
+def encoded_picture(picture: NDArray[np.uint8]) -> rr.EncodedImage:
+    """An RGB picture, (h, w, 3), as a JPEG."""
+    bgr = cv2.cvtColor(picture, cv2.COLOR_RGB2BGR)
+    return rr.EncodedImage(
+        contents=_encode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY]), media_type="image/jpeg"
+    )
+
+
+def _encode(suffix: str, pixels: NDArray[Any], options: Sequence[int] = ()) -> bytes:
+    ok, data = cv2.imencode(suffix, pixels, list(options))
+    if not ok:
+        raise ValueError(f"an image of shape {pixels.shape} cannot be encoded as {suffix}")
+    return data.tobytes()

@@ -1,0 +1,46 @@
+"""The colours of a recording, so that a thing has one colour in every view."""
+
+RGBA = tuple[int, int, int, int]
+
+LEFT: RGBA = (230, 85, 60, 255)
+RIGHT: RGBA = (50, 120, 220, 255)
+LEFT_TENTATIVE: RGBA = (230, 85, 60, 110)
+RIGHT_TENTATIVE: RGBA = (50, 120, 220, 110)
+BODY_PATH: RGBA = (250, 200, 60, 255)
+SUB_GOAL: RGBA = (250, 140, 30, 255)
+GOAL: RGBA = (60, 190, 90, 255)
+COM: RGBA = (240, 240, 240, 255)
+DCM: RGBA = (230, 60, 200, 255)
+BLOCK: RGBA = (168, 160, 148, 255)
+BOX_COLORS: dict[str, RGBA] = {"pad": (120, 124, 130, 255), "base": (120, 124, 130, 255)}
+BUDGET: RGBA = (220, 70, 70, 255)
+MEASURED: RGBA = (90, 170, 250, 255)
+
+STATUS_COLORS = {
+    "running": (240, 180, 50, 255),
+    "success": (70, 170, 90, 255),
+    "failure": (200, 75, 65, 255),
+    "idle": (70, 74, 82, 255),
+}
+
+# Told apart at a glance, also side by side; after Green-Armytage's alphabet of contrasting colours, softened.
+REGION_COLORS: tuple[tuple[int, int, int], ...] = (
+    (102, 194, 165),
+    (252, 141, 98),
+    (141, 160, 203),
+    (231, 138, 195),
+    (166, 216, 84),
+    (255, 217, 47),
+    (229, 196, 148),
+    (120, 180, 220),
+    (190, 150, 220),
+    (240, 170, 160),
+    (150, 205, 190),
+    (205, 205, 120),
+)
+
+
+def region_color(center_xy: tuple[float, float]) -> tuple[int, int, int]:
+    """A colour that a region keeps from frame to frame, because it follows from where the region lies."""
+    cell = (round(center_xy[0] / 0.15), round(center_xy[1] / 0.15))
+    return REGION_COLORS[(cell[0] * 7 + cell[1] * 3) % len(REGION_COLORS)]

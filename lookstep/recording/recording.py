@@ -1,0 +1,208 @@
+"""Writes a run as it happens: the scene, what the robot saw and thought, its tree, its timing and its reasons.
+
+Things are logged when they change. What changes with every tick is collected and sent in columns, which costs a
+fiftieth of logging it row by row.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import rerun as rr
+
+from behaviors import Node, Status, Tree
+from lookstep.moment import Moment
+from lookstep.recording import palette, scene
+from lookstep.recording.blueprint import TIMELINE, default_blueprint
+from lookstep.recording.columns import Columns
+from lookstep.recording.images import encoded_depth, encoded_picture
+from sim_envs.robot import RobotDescription
+from sim_envs.worlds import KinematicWorld
+from skills.body_path import BodyPath, Goal, SubGoal
+from skills.footsteps import FootstepPlan, Side
+from skills.geometry import Pose
+from skills.regions import PlanarRegions, RegionExtraction, debug_image
+from skills.walking import StepEventKind
+
+_APPLICATION = "lookstep"
+# Links are drawn and images kept at these periods; everything else when it changes [s].
+_LINK_PERIOD = 0.05
+_IMAGE_PERIOD = 0.5
+_FLUSH_PERIOD = 2.0
+_SUB_GOAL_RADIUS = 0.05
+_STATES = {
+    Status.RUNNING: "running",
+    Status.SUCCESS: "success",
+    Status.FAILURE: "failure",
+    Status.INVALID: "idle",
+}
+_LEVELS = {"info": "INFO", "warning": "WARN", "error": "ERROR"}
+
+
+class Recording:
+    """An observer that writes one `.rrd` file.
+
+    Args:
+        path: the file.
+        world: where the robot walks.
+        tree: what drives it.
+        robot: its table.
+        about: a page about the run, Markdown.
+        seed: of the run.
+    """
+
+    def __init__(
+        self, path: Path, world: KinematicWorld, tree: Tree, robot: RobotDescription, about: str, seed: int
+    ) -> None:
+        course = world.course
+        self._stream = rr.RecordingStream(_APPLICATION, recording_id=f"{course.name}-{seed}")
+        self._stream.save(path, default_blueprint=default_blueprint(course.start[:2], course.goal[:2]))
+        self._course = course
+        self._sole = robot.sole_corners_sole
+        self._columns = Columns(self._stream)
+        self._taken: list[tuple[Side, Pose]] = []
+        self._seen: dict[str, Any] = {}
+        self._box_poses: dict[str, Any] = {}
+        self._next_links = self._next_image = self._next_flush = 0.0
+        self._log_static(about)
+        self._links = self._log_links(world)
+        self._lanes = self._log_lanes(tree.nodes)
+
+    def observe(self, moment: Moment) -> None:
+        """Log what is new."""
+        self._stream.set_time(TIMELINE, duration=moment.time)
+        self._log_motion(moment)
+        for key, value in moment.tree.blackboard.values().items():
+            if self._seen.get(key) is not value:
+                self._seen[key] = value
+                self._log_value(key, value, moment)
+        self._log_tree(moment)
+        self._log_timing(moment)
+        self._log_steps(moment)
+        if moment.time >= self._next_flush:
+            self._next_flush = moment.time + _FLUSH_PERIOD
+            self._columns.flush()
+
+    def close(self) -> None:
+        """Write what is left and close the file."""
+        self._columns.flush()
+        self._stream.flush()
+        self._stream.disconnect()
+
+    def _log_static(self, about: str) -> None:
+        self._stream.log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
+        self._stream.log("about", rr.TextDocument(about, media_type="text/markdown"), static=True)
+        for entity, color, name in (
+            ("control/dcm_error", palette.DCM, "DCM error"),
+            ("control/lateral/com", palette.COM, "CoM"),
+            ("control/lateral/dcm", palette.DCM, "DCM"),
+            ("control/lateral/cop", palette.RIGHT, "CoP"),
+            ("timing/PlanFootsteps/used", palette.MEASURED, "footstep plan"),
+            ("timing/PlanFootsteps/budget", palette.BUDGET, "budget"),
+            ("timing/ExtractRegions/used", palette.MEASURED, "regions"),
+            ("timing/ExtractRegions/budget", palette.BUDGET, "budget"),
+        ):
+            self._stream.log(entity, rr.SeriesLines(colors=[color], names=[name], widths=[1.5]), static=True)
+
+    def _log_links(self, world: KinematicWorld) -> list[tuple[str, int]]:
+        """Log the shape of each link once; returns entity and body id of each."""
+        links = []
+        for body, mesh in scene.robot_meshes(world.model):
+            entity = f"world/robot/{world.model.body(body).name.rpartition('/')[2]}"
+            self._stream.log(entity, mesh, static=True)
+            links.append((entity, body))
+        return links
+
+    def _log_motion(self, moment: Moment) -> None:
+        time = moment.time
+        if time >= self._next_links:
+            self._next_links = time + _LINK_PERIOD
+            data = moment.world.physics.data.ptr
+            for entity, body in self._links:
+                self._columns.transform(entity, time, data.xpos[body].copy(), data.xquat[body].copy())
+        boxes = moment.world.box_poses()
+        if boxes != self._box_poses:
+            self._box_poses = boxes
+            self._stream.log("world/course", scene.course_boxes(self._course, boxes))
+        for sample in moment.samples:
+            self._columns.scalar("control/dcm_error", sample.time, 1e3 * sample.dcm_error)
+            self._columns.scalar("control/lateral/com", sample.time, sample.com_world[1])
+            self._columns.scalar("control/lateral/dcm", sample.time, sample.dcm_world[1])
+            self._columns.scalar("control/lateral/cop", sample.time, sample.cop_world[1])
+
+    def _log_value(self, key: str, value: Any, moment: Moment) -> None:
+        """Log a port value by its type, so that any tree's ports are shown, whatever their names."""
+        log = self._stream.log
+        height = float(moment.state.stance.mid_feet[2])
+        match value:
+            case PlanarRegions():
+                log(f"world/{key}/outlines", scene.region_outlines(value))
+                log(f"world/{key}/surfaces", scene.region_surfaces(value))
+            case RegionExtraction():
+                self._log_images(value, moment)
+            case FootstepPlan():
+                log(f"world/{key}/steps", scene.footprints(value.steps, self._sole))
+                log(f"world/{key}/swings", scene.swing_ways(value.steps, moment.status.imminent_stance))
+            case BodyPath():
+                log(f"world/{key}", scene.path_line(value, height + 0.02))
+            case SubGoal():
+                x, y, _ = value.pose_world
+                log(f"world/{key}", rr.Points3D([(x, y, height)], radii=_SUB_GOAL_RADIUS, colors=[palette.SUB_GOAL]))
+            case Goal():
+                log(f"world/{key}", scene.goal_arrow(value, height))
+            case _:
+                pass
+
+    def _log_images(self, extraction: RegionExtraction, moment: Moment) -> None:
+        if moment.time < self._next_image:
+            return
+        self._next_image = moment.time + _IMAGE_PERIOD
+        self._stream.log("camera/depth", encoded_depth(extraction.image))
+        self._stream.log("camera/regions", encoded_picture(debug_image(extraction)))
+        camera, T_world_camera = extraction.image.camera, extraction.image.T_world_camera
+        pinhole = rr.Pinhole(
+            focal_length=(camera.fx, camera.fy),
+            principal_point=(camera.cx, camera.cy),
+            resolution=(camera.width, camera.height),
+            image_plane_distance=0.25,
+        )
+        pose = rr.Transform3D(translation=T_world_camera.p, mat3x3=T_world_camera.R)
+        self._stream.log("world/camera", pinhole, pose)
+
+    def _log_tree(self, moment: Moment) -> None:
+        for transition in moment.tree.transitions:
+            lane = self._lanes[transition.path]
+            self._columns.state(lane, moment.time, _STATES[transition.after])
+            if transition.reason and transition.after is Status.FAILURE:
+                self._stream.log("log", rr.TextLog(f"{transition.path}: {transition.reason}", level="WARN"))
+        for line in moment.log:
+            self._stream.log("log", rr.TextLog(f"{line.path}: {line.text}", level=_LEVELS[line.level]))
+
+    def _log_lanes(self, nodes: Sequence[Node]) -> dict[str, str]:
+        """One lane a node, in the order of the tree: rerun sorts lanes by their entity paths."""
+        states = list(palette.STATUS_COLORS)
+        lanes = {}
+        for index, node in enumerate(nodes):
+            depth = node.path.count("/") - 1
+            lanes[node.path] = f"tree/{index:02d} {'· ' * depth}{node.name}"
+            configuration = rr.StateConfiguration(
+                values=states, labels=states, colors=np.array([list(c) for c in palette.STATUS_COLORS.values()])
+            )
+            self._stream.log(lanes[node.path], configuration, static=True)
+        return lanes
+
+    def _log_timing(self, moment: Moment) -> None:
+        for job in moment.jobs:
+            kind = moment.tree.node(job.path).kind
+            if job.compute_seconds is not None:
+                self._columns.scalar(f"timing/{kind}/used", job.ended, 1e3 * job.compute_seconds)
+                self._columns.scalar(f"timing/{kind}/budget", job.ended, 1e3 * job.budget)
+
+    def _log_steps(self, moment: Moment) -> None:
+        for event in moment.events:
+            if event.kind is StepEventKind.COMPLETED:
+                self._taken.append((event.step.side, event.T_world_sole))
+                self._stream.log("world/steps_taken", scene.taken_footprints(self._taken, self._sole))

@@ -1,0 +1,162 @@
+"""The solid things of a recording as rerun meshes and lines: robot links, blocks, regions, soles."""
+
+# mujoco keeps its types in binary modules without stubs.
+# pyright: reportAttributeAccessIssue=false
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import mujoco
+import numpy as np
+import rerun as rr
+
+from lookstep.recording import palette
+from sim_envs.courses import Course
+from sim_envs.sensors import GeomMesh, geom_mesh, geom_rgba
+from skills.body_path import BodyPath, Goal
+from skills.footsteps import Footstep, Side, Stance
+from skills.geometry.pose import Array, Pose
+from skills.regions import PlanarRegion, PlanarRegions
+
+BoxPose = tuple[tuple[float, ...], tuple[float, ...]]
+
+# Lines and footprints float above the surface they lie on, or the surface swallows them.
+_LIFT = 0.006
+_ROUND_SEGMENTS = 16
+
+
+def robot_meshes(model: mujoco.MjModel) -> Iterator[tuple[int, rr.Mesh3D]]:
+    """The visible shape of each link in its own frame, links without one left out: (body id, mesh)."""
+    mesh = geom_mesh(model, segments=_ROUND_SEGMENTS)
+    bodies = model.geom_bodyid[mesh.geom_ids]
+    for body in np.unique(bodies):
+        # Boxes of the course are mocap bodies.
+        if model.body_mocapid[body] < 0 and body != 0:
+            yield int(body), _merged(model, mesh, np.flatnonzero(bodies == body))
+
+
+def _merged(model: mujoco.MjModel, mesh: GeomMesh, members: np.ndarray) -> rr.Mesh3D:
+    """Some geoms of one body as one mesh with flat shading."""
+    corners, normals, colors = [], [], []
+    for i in members:
+        geom = int(mesh.geom_ids[i])
+        T_body_geom = Pose.from_quaternion_wxyz(model.geom_quat[geom], model.geom_pos[geom])
+        vertices_body = T_body_geom @ mesh.vertices_geom
+        for face in mesh.faces[mesh.face_start[i] : mesh.face_start[i + 1]]:
+            triangles = [vertices_body[face[[0, 1, 2]]]]
+            if face[3] != face[2]:
+                triangles.append(vertices_body[face[[0, 2, 3]]])
+            for triangle in triangles:
+                normal = np.cross(triangle[1] - triangle[0], triangle[2] - triangle[0])
+                corners.append(triangle)
+                normals.append(np.tile(normal / max(float(np.linalg.norm(normal)), 1e-12), (3, 1)))
+                colors.append(np.tile(np.round(255 * geom_rgba(model, geom)).astype(np.uint8), (3, 1)))
+    return rr.Mesh3D(
+        vertex_positions=np.concatenate(corners).astype(np.float32),
+        vertex_normals=np.concatenate(normals).astype(np.float32),
+        vertex_colors=np.concatenate(colors),
+    )
+
+
+def region_outlines(regions: PlanarRegions) -> rr.LineStrips3D:
+    """Outline of every region in its colour."""
+    strips = [_closed(_lifted(region.T_world_region, region.hull_region)) for region in regions.regions]
+    return rr.LineStrips3D(strips, colors=[_color(region, 255) for region in regions.regions], radii=0.006)
+
+
+def region_surfaces(regions: PlanarRegions) -> rr.Mesh3D | rr.Clear:
+    """The convex parts of every region as one translucent mesh."""
+    corners, colors = [np.zeros((0, 3))], []
+    for region in regions.regions:
+        for part in region.convex_parts_region:
+            fan = _fan(_lifted(region.T_world_region, part))
+            corners.append(fan)
+            colors.extend([_color(region, 130)] * len(fan))
+    if not colors:
+        return rr.Clear(recursive=False)
+    return rr.Mesh3D(
+        vertex_positions=np.concatenate(corners).astype(np.float32), vertex_colors=np.array(colors, dtype=np.uint8)
+    )
+
+
+def _color(region: PlanarRegion, alpha: int) -> palette.RGBA:
+    center = region.hull_world.mean(axis=0)
+    return (*palette.region_color((float(center[0]), float(center[1]))), alpha)
+
+
+def footprints(steps: Sequence[Footstep], sole: Array) -> rr.LineStrips3D:
+    """Soles of steps as outlines with a heading tick; steps after the first are fainter, because they may change."""
+    strips, colors = [], []
+    for i, step in enumerate(steps):
+        left = step.side is Side.LEFT
+        firm, faint = (palette.LEFT, palette.LEFT_TENTATIVE) if left else (palette.RIGHT, palette.RIGHT_TENTATIVE)
+        strips += [_closed(_lifted(step.T_world_sole, sole)), _heading_tick(step.T_world_sole, sole)]
+        colors += [firm if i == 0 else faint] * 2
+    return rr.LineStrips3D(strips, colors=colors, radii=0.008)
+
+
+def taken_footprints(steps: Sequence[tuple[Side, Pose]], sole: Array) -> rr.Mesh3D:
+    """Filled soles where feet have landed."""
+    fans = [_fan(_lifted(T_world_sole, sole)) for _, T_world_sole in steps]
+    colors = [palette.LEFT_TENTATIVE if side is Side.LEFT else palette.RIGHT_TENTATIVE for side, _ in steps]
+    return rr.Mesh3D(
+        vertex_positions=np.concatenate(fans).astype(np.float32),
+        vertex_colors=np.repeat(np.array(colors, dtype=np.uint8), [len(fan) for fan in fans], axis=0),
+    )
+
+
+def swing_ways(steps: Sequence[Footstep], stance: Stance) -> rr.LineStrips3D:
+    """The way of each swing foot through its waypoints, from a stance on."""
+    strips = []
+    for step in steps:
+        start = stance.sole(step.side)
+        strips.append(np.vstack((start.p, step.swing_waypoints_world, step.T_world_sole.p)))
+        stance = stance.with_sole(step.side, step.T_world_sole)
+    colors = [palette.LEFT if step.side is Side.LEFT else palette.RIGHT for step in steps]
+    return rr.LineStrips3D(strips, colors=colors, radii=0.003)
+
+
+def path_line(path: BodyPath, height: float) -> rr.LineStrips3D:
+    """The body path as a line at one height."""
+    xy = path.waypoints_world[:, :2]
+    return rr.LineStrips3D([np.column_stack((xy, np.full(len(xy), height)))], colors=[palette.BODY_PATH], radii=0.01)
+
+
+def _lifted(T_world_plane: Pose, polygon: Array) -> Array:
+    """A polygon of the plane's xy in the world, a little above the plane, (N, 3) [m]."""
+    return T_world_plane @ np.column_stack((polygon, np.full(len(polygon), _LIFT)))
+
+
+def _closed(points: Array) -> Array:
+    return np.vstack((points, points[:1]))
+
+
+def _heading_tick(T_world_sole: Pose, sole: Array) -> Array:
+    toe = float(sole[:, 0].max())
+    return T_world_sole @ np.array([[0.3 * toe, 0.0, _LIFT], [toe, 0.0, _LIFT]])
+
+
+def _fan(polygon_world: Array) -> Array:
+    """A convex polygon as the corners of its triangle fan, (3 (N - 2), 3)."""
+    n = len(polygon_world)
+    indices = np.array([(0, i, i + 1) for i in range(1, n - 1)]).reshape(-1)
+    return polygon_world[indices]
+
+
+def course_boxes(course: Course, poses: Mapping[str, BoxPose]) -> rr.Boxes3D:
+    """All boxes of a course as they lie now."""
+    placed = [poses[box.name] for box in course.boxes]
+    return rr.Boxes3D(
+        half_sizes=[0.5 * np.array(box.size) for box in course.boxes],
+        centers=[position for position, _ in placed],
+        quaternions=[np.roll(wxyz, -1) for _, wxyz in placed],
+        colors=[palette.BOX_COLORS.get(box.kind, palette.BLOCK) for box in course.boxes],
+        fill_mode="solid",
+        show_labels=False,
+    )
+
+
+def goal_arrow(goal: Goal, height: float) -> rr.Arrows3D:
+    """The goal as an arrow along its heading."""
+    vector = 0.4 * np.array((np.cos(goal.yaw), np.sin(goal.yaw), 0.0))
+    return rr.Arrows3D(origins=[(goal.x, goal.y, height + 0.05)], vectors=[vector], colors=[palette.GOAL], radii=0.02)

@@ -1,0 +1,253 @@
+"""One walk: a world, a robot in it, a tree that drives it, and those who watch, ticked on the robot's clock.
+
+world.advance(tick period) -> tree.tick() -> recording, statistics and progress observe
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import time as wall
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from behaviors import Executor, ExecutorMode, OperatorEvent, SettingError, Trace, Tree, TreeSpec, load_tree
+from behaviors import Outcome as TreeOutcome
+from lookstep.configuration import Assignments, Configuration, load_configuration, split_assignments
+from lookstep.errors import UserError
+from lookstep.moment import Moment, Observer
+from lookstep.statistics import Statistics
+from lookstep.summary import Outcome, Summary, installed_versions
+from lookstep.trees import tree_path
+from lookstep.warm_up import warm_up
+from sim_envs.courses import Course, CourseError, load_course
+from sim_envs.worlds import KinematicWorld
+from skills.body_path import Goal
+from skills.parameters import ParameterError
+from skills.walking import WalkingPhase
+
+WORLDS = ("kinematic",)
+EXECUTORS = tuple(mode.value for mode in ExecutorMode)
+
+TICK_RATE = 50.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """What to run.
+
+    Attributes:
+        tree: name of a shipped tree, or a YAML file.
+        course: name of a generator or shipped course, or a YAML file.
+        seed: of the course and of the sensor noise.
+        world: kind of simulation.
+        executor: how long-running skills are run, `lockstep` or `realtime`.
+        speed: robot time per wall time; as fast as possible where None, which realtime does not allow.
+        goal: x [m], y [m], yaw [rad]; the course's own where None.
+        time_limit: robot time after which the run ends [s].
+        preset: name of a shipped preset, or a YAML file.
+        assignments: `subject.key=value`, `course.option=value` or `/node/path.key=value`.
+        record: recording file to write.
+        out: folder for `summary.json` and `trace.jsonl`.
+    """
+
+    tree: str = "look_and_step"
+    course: str = "rough"
+    seed: int = 0
+    world: str = "kinematic"
+    executor: str = "lockstep"
+    speed: float | None = None
+    goal: tuple[float, float, float] | None = None
+    time_limit: float = 180.0
+    preset: str | None = None
+    assignments: tuple[str, ...] = ()
+    record: Path | None = None
+    out: Path | None = None
+
+
+def run_walk(options: RunOptions, *observers: Observer) -> Summary:
+    """Walk once.
+
+    Args:
+        options: what to run.
+        observers: watch besides recording and statistics.
+
+    Raises:
+        YamlError, UserError: where the input is not usable; nothing has been written then.
+    """
+    _check(options)
+    assignments = split_assignments(options.assignments)
+    configuration = load_configuration(options.preset, assignments.subjects)
+    spec = load_tree(tree_path(options.tree))
+    course = _course(options, assignments.course)
+    warm_up(configuration)
+    for folder in filter(None, (options.out, options.record and options.record.parent)):
+        folder.mkdir(parents=True, exist_ok=True)
+
+    world = _world(course, configuration, options.seed)
+    tree = _tree(spec, world, configuration, assignments, options)
+    statistics = Statistics(world, configuration)
+    watching: list[Observer] = [statistics, *observers]
+    recording = None
+    if options.record is not None:
+        from lookstep.recording import Recording
+
+        recording = Recording(options.record, world, tree, configuration.robot, _about(options), options.seed)
+        watching.append(recording)
+    try:
+        ending = _loop(world, tree, watching, options, Goal(*(options.goal or course.goal)))
+    finally:
+        tree.shutdown()
+        if recording is not None:
+            recording.close()
+    summary = _summarise(ending, statistics, tree, options, course)
+    if options.out is not None:
+        summary.write(options.out / "summary.json")
+    return summary
+
+
+@dataclass(frozen=True, slots=True)
+class _Ending:
+    outcome: Outcome
+    reason: str
+    wall_s: float
+
+
+def _loop(world: KinematicWorld, tree: Tree, watching: list[Observer], options: RunOptions, goal: Goal) -> _Ending:
+    pace = _Pace(_speed(options))
+    outcome, reason = None, ""
+    tree.send(OperatorEvent("goal", goal))
+    while outcome is None:
+        world.advance(tree.next_tick_time - world.time)
+        pace.wait_until(world.time)
+        tree.tick()
+        moment = Moment(
+            time=world.time,
+            world=world,
+            tree=tree,
+            state=world.true_state(),
+            status=world.status(),
+            events=tree.context.events,
+            samples=world.drain_log(),
+            jobs=tree.drain_jobs(),
+            log=tree.drain_log(),
+        )
+        for observer in watching:
+            observer.observe(moment)
+        outcome, reason = _ending(moment, options.time_limit)
+    return _Ending(outcome, reason, pace.elapsed)
+
+
+def _ending(moment: Moment, time_limit: float) -> tuple[Outcome | None, str]:
+    """Whether the run ends with this tick, and why."""
+    tree = moment.tree
+    if tree.outcome is TreeOutcome.ERROR:
+        return Outcome.ERROR, tree.reason
+    if moment.status.phase is WalkingPhase.FALLEN:
+        return Outcome.FELL, moment.status.failure
+    if tree.outcome is TreeOutcome.SUCCESS:
+        return Outcome.GOAL_REACHED, "the robot stands at the goal"
+    if tree.outcome is TreeOutcome.FAILURE:
+        return Outcome.STOPPED, tree.reason
+    if moment.time >= time_limit:
+        return Outcome.TIMEOUT, f"{time_limit:g} s are over; last: {tree.root.reason or 'walking'}"
+    return None, ""
+
+
+class _Pace:
+    """Holds robot time back to a multiple of wall time."""
+
+    def __init__(self, speed: float | None) -> None:
+        self._speed = speed
+        self._started = wall.perf_counter()
+
+    @property
+    def elapsed(self) -> float:
+        """Wall time since the start [s]."""
+        return wall.perf_counter() - self._started
+
+    def wait_until(self, time: float) -> None:
+        """Sleep until the wall has caught up with a robot time."""
+        if self._speed is not None:
+            wall.sleep(max(0.0, time / self._speed - self.elapsed))
+
+
+def _speed(options: RunOptions) -> float | None:
+    if options.speed is None and options.executor == ExecutorMode.REALTIME.value:
+        return 1.0
+    return options.speed
+
+
+def _check(options: RunOptions) -> None:
+    if options.speed is not None and not options.speed > 0.0:
+        raise UserError(f"--speed: got {options.speed}, needs a positive number")
+    if not options.time_limit > 0.0:
+        raise UserError(f"--time-limit: got {options.time_limit}, needs a positive number of seconds")
+    if options.seed < 0:
+        raise UserError(f"--seed: got {options.seed}, needs a whole number from 0")
+    if options.out is not None and options.out.exists() and not options.out.is_dir():
+        raise UserError(f"--out {options.out}: is a file, needs a folder")
+
+
+def _course(options: RunOptions, course_options: Mapping[str, Any]) -> Course:
+    try:
+        return load_course(options.course, seed=options.seed, **course_options)
+    except (CourseError, ParameterError) as error:
+        raise UserError(f"course: {error}") from error
+
+
+def _tree(
+    spec: TreeSpec, world: KinematicWorld, configuration: Configuration, assignments: Assignments, options: RunOptions
+) -> Tree:
+    executor = Executor(ExecutorMode(options.executor))
+    try:
+        return Tree(
+            spec,
+            world,
+            rate=TICK_RATE,
+            executor=executor,
+            parameters=configuration.by_subject(),
+            settings=assignments.nodes,
+            trace=Trace(None if options.out is None else options.out / "trace.jsonl"),
+        )
+    except (SettingError, ParameterError) as error:
+        executor.shutdown()
+        raise UserError(f"--set: {error}") from error
+
+
+def _world(course: Course, configuration: Configuration, seed: int) -> KinematicWorld:
+    return KinematicWorld(
+        course,
+        seed=seed,
+        parameters=configuration.world,
+        robot=configuration.robot,
+        walking=configuration.walking,
+        camera=configuration.camera,
+        noise=configuration.noise,
+        falls=configuration.falls,
+    )
+
+
+def _about(options: RunOptions) -> str:
+    """The page of a recording that says what ran."""
+    rows = [f"| {field.name} | {getattr(options, field.name)} |" for field in dataclasses.fields(options)]
+    return "\n".join(("# What ran", "", "| option | value |", "|---|---|", *rows))
+
+
+def _summarise(ending: _Ending, statistics: Statistics, tree: Tree, options: RunOptions, course: Course) -> Summary:
+    figures = statistics.figures()
+    return Summary(
+        outcome=ending.outcome,
+        reason=ending.reason,
+        course=course.name,
+        tree=tree.spec.name,
+        world=options.world,
+        executor=options.executor,
+        preset=options.preset,
+        seed=options.seed,
+        wall_s=round(ending.wall_s, 3),
+        versions=installed_versions(),
+        trace_hash=tree.trace.hash,
+        **{field.name: getattr(figures, field.name) for field in dataclasses.fields(figures)},
+    )

@@ -1,0 +1,125 @@
+"""The figures of one run, as they go to people in a table and to programs as `summary.json`."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from dataclasses import dataclass
+from enum import Enum
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from sim_envs.judge import StepCounts
+
+_VERSIONED = ("lookstep", "dm-control", "mujoco", "numba", "numpy", "opencv-python-headless", "pin", "py-trees")
+
+
+class Outcome(Enum):
+    """How a run ended."""
+
+    GOAL_REACHED = "goal_reached"
+    FELL = "fell"
+    TIMEOUT = "timeout"
+    STOPPED = "stopped"
+    ERROR = "error"
+
+
+@dataclass(frozen=True, slots=True)
+class PauseCounts:
+    """Double support longer than 1.5 times the nominal transfer while a goal is active."""
+
+    count: int
+    total_s: float
+    causes: dict[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class SkillTiming:
+    """Compute times of one skill; a deadline miss is a compute time over its budget."""
+
+    count: int
+    median_ms: float | None
+    p99_ms: float | None
+    budget_ms: float | None
+    deadline_misses: int
+
+    @classmethod
+    def of(cls, compute_times: list[float], budgets: list[float]) -> SkillTiming:
+        """The statistics of jobs by their compute times and budgets [s]."""
+        if not compute_times:
+            return cls(0, None, None, None, 0)
+        misses = sum(used > budget for used, budget in zip(compute_times, budgets, strict=True))
+        return cls(
+            count=len(compute_times),
+            median_ms=round(1e3 * float(np.median(compute_times)), 3),
+            p99_ms=round(1e3 * float(np.percentile(compute_times, 99)), 3),
+            budget_ms=round(1e3 * min(budgets), 3),
+            deadline_misses=misses,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """The figures of one run.
+
+    Attributes:
+        outcome, reason: how it ended, and why in one sentence.
+        course, tree, world, executor, preset, seed: what ran.
+        duration_s: robot time from the first to the last tick; wall_s: wall time for it, without set-up.
+        distance_m: straight way of the true mid-feet from first to last; speed_mps: distance over duration.
+        steps: by the paper's definitions (section Results), judged on the truth; pauses likewise.
+        first_step_after_s: robot time from the goal to the first lift-off; None where no step was made.
+        plan, regions: compute times of footstep planning and of region extraction.
+        min_support_fraction: smallest share of a stance sole's area within 1 cm of true ground at mid-stance.
+        view_fraction: share of plans whose first three footholds lie on regions of the newest depth image.
+        foothold_error_m: median distance of a landed sole's centre from its commanded foothold.
+        versions, trace_hash: what it takes to get the same run again, and what proves it.
+    """
+
+    outcome: Outcome
+    reason: str
+    course: str
+    tree: str
+    world: str
+    executor: str
+    preset: str | None
+    seed: int
+    duration_s: float
+    wall_s: float
+    distance_m: float
+    speed_mps: float
+    steps: StepCounts
+    pauses: PauseCounts
+    first_step_after_s: float | None
+    plan: SkillTiming
+    regions: SkillTiming
+    min_support_fraction: float | None
+    view_fraction: float | None
+    foothold_error_m: float | None
+    versions: dict[str, str]
+    trace_hash: str
+
+    @property
+    def real_time_factor(self) -> float:
+        """Robot time per wall time."""
+        return self.duration_s / self.wall_s if self.wall_s > 0 else math.inf
+
+    def to_json(self) -> str:
+        """The summary as JSON text, keys in the order of the class."""
+        table = dataclasses.asdict(self)
+        table["outcome"] = self.outcome.value
+        return json.dumps(table, indent=2, allow_nan=False) + "\n"
+
+    def write(self, path: Path) -> None:
+        """Write the JSON in one go, so that nobody ever reads half a file."""
+        partial = path.with_suffix(path.suffix + ".partial")
+        partial.write_text(self.to_json())
+        partial.replace(path)
+
+
+def installed_versions() -> dict[str, str]:
+    """Versions of the packages that can change a figure."""
+    return {name: version(name) for name in _VERSIONED}

@@ -1,0 +1,41 @@
+"""Load every compiled kernel before the clock starts, so that no walk pays for compiling.
+
+The whole chain runs once on a small flat course: one image, its regions, one plan, one control step. The first time on
+a machine this compiles, later it loads from the disk cache.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from lookstep.configuration import Configuration
+from sim_envs.courses import load_course
+from sim_envs.worlds import KinematicWorld
+from skills.body_path import straight_path, sub_goal
+from skills.footsteps import plan_from_stance, terrain_ahead
+from skills.regions import RegionMemory, examine_regions
+
+
+def warm_up(configuration: Configuration) -> None:
+    """Run each kernel once with the types that a walk uses."""
+    course = load_course("flat")
+    world = KinematicWorld(
+        course,
+        parameters=configuration.world,
+        robot=configuration.robot,
+        walking=configuration.walking,
+        camera=configuration.camera,
+        noise=configuration.noise,
+        falls=configuration.falls,
+    )
+    image = world.depth_image()
+    assert image is not None, "the world takes its first frame when it is made"
+    stance = world.status().imminent_stance
+    extraction = examine_regions(image, configuration.regions)
+    ground = RegionMemory(configuration.region_memory).update(extraction.regions, stance, image)
+    path = straight_path(np.array(course.start), np.array(course.goal))
+    goal = sub_goal(path, stance, configuration.sub_goal)
+    terrain = terrain_ahead(ground, stance, goal, configuration.footsteps, configuration.terrain)
+    plan = plan_from_stance(terrain, stance, goal, configuration.footsteps)
+    world.send_footsteps(plan.steps)
+    world.advance(0.1)
