@@ -2,7 +2,8 @@
 
 Encodes None, truth values, numbers, text, enums, numpy arrays (type, shape, content), tuples, lists, sets, dicts
 (sorted by their keys' bytes) and dataclasses (class and fields). Every part tells its kind and length, so that no two
-values share an encoding. Also finds out whether a value can change: only an immutable one may be hashed once.
+values share an encoding; of a large array the content is replaced by its hash. Also finds out whether a value can
+change: only an immutable one may be hashed once.
 """
 
 from __future__ import annotations
@@ -11,12 +12,13 @@ import dataclasses
 import struct
 from collections.abc import Callable
 from enum import Enum
-from hashlib import blake2b
+from hashlib import blake2b, sha256
 from typing import Any
 
 import numpy as np
 
 DIGEST_BYTES = 16
+_BULK_BYTES = 4096
 
 _FLOAT = struct.Struct("<cd")
 _LENGTH = struct.Struct("<cQ")
@@ -96,7 +98,8 @@ def _append_array(out: bytearray, value: np.ndarray) -> bool:
     if value.dtype.hasobject:
         raise CanonicalError("an array of Python objects has no canonical bytes")
     out += struct.pack(f"<cB{len(kind)}sB{value.ndim}Q", b"a", len(kind), kind, value.ndim, *value.shape)
-    out += value.tobytes()
+    # An image is hashed where it lies, by the hash for which processors have instructions.
+    out += value.tobytes() if value.nbytes <= _BULK_BYTES else sha256(np.ascontiguousarray(value).data).digest()
     return not value.flags.writeable
 
 

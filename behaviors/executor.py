@@ -16,6 +16,8 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import Any
 
+from behaviors.canonical import CanonicalError, digest
+
 # Robot times are multiples of the control period up to rounding; a job due at a tick must not slip to the next.
 _TIME_TOLERANCE = 1e-9
 
@@ -82,9 +84,23 @@ class Job:
 
     Attributes:
         done: whether it was delivered, with a result or an error.
+        digest: hash of the result for the trace, where the result is immutable; made beside the computation, because
+            hashing an image takes longer than a tick should.
     """
 
-    __slots__ = ("budget", "deadline", "done", "due", "error", "future", "job_id", "path", "result", "submitted")
+    __slots__ = (
+        "budget",
+        "deadline",
+        "digest",
+        "done",
+        "due",
+        "error",
+        "future",
+        "job_id",
+        "path",
+        "result",
+        "submitted",
+    )
 
     def __init__(self, job_id: int, path: str, submitted: float, budget: float, deadline: float | None) -> None:
         self.job_id = job_id
@@ -97,12 +113,14 @@ class Job:
         self.done = False
         self.result: Any = None
         self.error: Exception | None = None
+        self.digest: bytes | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class _Computed:
     result: Any
     error: Exception | None
+    digest: bytes | None
     compute_seconds: float
     cpu_seconds: float
 
@@ -144,14 +162,18 @@ class Executor:
         self._pending.sort(key=lambda pending: (pending.due, pending.job_id))
         return job
 
-    def deliver(self, time: float) -> None:
-        """Hand over the results that are due at this robot time."""
+    def deliver(self, time: float) -> tuple[Job, ...]:
+        """Hand over the results that are due at this robot time, in order."""
+        delivered = []
         for job in tuple(self._pending):
             if self._is_due(job, time):
                 self._pending.remove(job)
                 computed = job.future.result()
-                job.result, job.error, job.done = computed.result, computed.error, True
+                job.result, job.error, job.digest = computed.result, computed.error, computed.digest
+                job.done = True
+                delivered.append(job)
                 self._record(job, time, JobOutcome.DELIVERED if job.error is None else JobOutcome.RAISED)
+        return tuple(delivered)
 
     def cancel(self, job: Job, time: float) -> None:
         """Drop a job: its result never arrives. A job that is delivered stays so."""
@@ -201,4 +223,14 @@ def _compute(function: Callable[..., Any], arguments: tuple[Any, ...]) -> _Compu
         result = function(*arguments)
     except Exception as raised:
         error = raised
-    return _Computed(result, error, wall.perf_counter() - started, wall.thread_time() - cpu_started)
+    compute_seconds, cpu_seconds = wall.perf_counter() - started, wall.thread_time() - cpu_started
+    return _Computed(result, error, _digest(result), compute_seconds, cpu_seconds)
+
+
+def _digest(result: Any) -> bytes | None:
+    try:
+        hashed, immutable = digest(result)
+    except CanonicalError:
+        # Where such a result goes to a port, the trace says so.
+        return None
+    return hashed if immutable else None

@@ -255,7 +255,9 @@ class Tree:
         inputs, self._pending_inputs = self._pending_inputs, []
         for key, value in inputs:
             self.blackboard.slot(key, None).write(value)
-        context.executor.deliver(context.time)
+        for job in context.executor.deliver(context.time):
+            if job.digest is not None:
+                self.trace.prime(job.result, job.digest)
 
     def _take_time(self, time: float) -> None:
         if self._first_tick_time is None:

@@ -9,6 +9,7 @@ import pytest
 from scripted import leaf_of, make, run
 
 from behaviors import Executor, ExecutorMode, JobOutcome, Outcome
+from behaviors.canonical import digest
 
 SQUARE = "{tree: t, root: {sequence: [GiveNumber: {out: [number], value: 3}, Square: {in: [number], out: [square]}]}}"
 
@@ -141,3 +142,12 @@ def test_an_exception_in_the_computation_is_a_fault_of_its_leaf(monkeypatch: pyt
     assert tree.reason == "/t/square: ZeroDivisionError in tick: division by zero"
     assert tree.drain_jobs()[0].outcome is JobOutcome.RAISED
     tree.shutdown()
+
+
+def test_the_hash_made_beside_a_computation_is_that_of_the_result(executor: Executor):
+    job = submit(executor, lambda: (1.0, "x"))
+    changing = submit(executor, lambda: [1.0])
+    without = submit(executor, object)
+    assert executor.deliver(0.1) == (job, changing, without)
+    assert job.digest == digest((1.0, "x"))[0]
+    assert changing.digest is None and without.digest is None

@@ -196,6 +196,9 @@ DIFFERENT = [
     np.zeros(2, dtype=np.float32),
     np.zeros(2, dtype=np.int64),
     np.array([0.0, 1e-300]),
+    np.zeros(1000),
+    np.zeros((10, 100)),
+    np.zeros(1000) + 1e-300,
     np.float64(0.5),
     np.int32(1),
 ]
