@@ -132,7 +132,7 @@ def _shade(
 
     level = np.ones(1, dtype=np.float32)
     unshaded = _incoming(level * suns[:, 2].mean(), 0.5 * level, level, style)
-    flat[surfaces.pixels[floor]] *= srgb(np.minimum(incoming[floor] / unshaded, 1))
+    flat[surfaces.pixels[floor]] *= srgb(incoming[floor] / unshaded)
 
     scene = ~floor
     shine = style.gloss * _shine(
@@ -202,7 +202,9 @@ def _float(image: Image, depths: Image, overlay: Overlay, layer: Layer) -> None:
 
 
 def _darken_silhouettes(image: Image, depths: Image, strength: float) -> None:
-    """Darken the nearer side of jumps in depth."""
-    near = np.minimum(depths, 1e3)
-    jump = cv2.dilate(near, np.ones((3, 3), np.uint8)) - near
-    image *= 1 - np.float32(strength) * np.clip(jump / (_JUMP * near), 0, 1)[..., None]
+    """Darken the nearer side of jumps in depth, which are bends of inverse depth: on a plane it runs straight."""
+    inverse = 1 / depths
+    bend = np.zeros_like(inverse)
+    bend[:, 1:-1] = 2 * inverse[:, 1:-1] - inverse[:, :-2] - inverse[:, 2:]
+    bend[1:-1] = np.maximum(bend[1:-1], 2 * inverse[1:-1] - inverse[:-2] - inverse[2:])
+    image *= 1 - np.float32(strength) * np.clip(bend / np.maximum(_JUMP * inverse, np.float32(1e-9)), 0, 1)[..., None]

@@ -26,7 +26,7 @@ from skills.regions.planar_region import PlanarRegion
 
 CAMERA = picture_camera(160, 120)
 VIEW = orbit_view((0, 0, 0), distance=4.0, azimuth=-0.8, elevation=0.5)
-FAST = LightParameters(sun_lights=4, sky_lights=8, map_size=128)
+FAST = LightParameters(sun_lights=8, sky_lights=32, map_size=128)
 PLAIN = PictureStyle(outline=0.0, gloss=0.0)
 SQUARE = np.array([[-0.3, -0.3, 0.0], [0.3, -0.3, 0.0], [0.3, 0.3, 0.0], [-0.3, 0.3, 0.0]])
 SLAB = '<geom type="box" size="1 1 0.1" pos="0 0 -0.1" rgba="0.6 0.6 0.6 1"/>'
