@@ -158,7 +158,7 @@ _trees = st.recursive(
 )
 
 
-@settings(max_examples=150, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(_trees)
 def test_every_tree_decides_and_calls_its_leaves_as_py_trees_does(shape: Any):
     text, peers = [], []

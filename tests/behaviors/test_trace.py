@@ -216,7 +216,7 @@ _values = st.recursive(
 )
 
 
-@settings(max_examples=200, deadline=None, derandomize=True)
+@settings(max_examples=100, deadline=None, derandomize=True)
 @given(_values, _values)
 def test_encodings_are_prefix_free(a: Any, b: Any):
     assert encode((a, b)) == encode((a,))[:1] + (2).to_bytes(8, "little") + encode(a) + encode(b)
