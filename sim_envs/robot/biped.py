@@ -10,6 +10,7 @@ from skills.geometry.pose import Pose, rotation_x
 
 _HOUSING_HALF_SIZE = (0.045, 0.0125, 0.0125)
 _HOUSING_BEHIND_LENS = 0.02
+_HOUSING_COLOR = (0.22, 0.24, 0.28, 1.0)
 
 
 class Biped(composer.Entity):
@@ -26,19 +27,24 @@ class Biped(composer.Entity):
             raise ValueError(
                 f"camera_body: got {self._description.camera_body!r}, which is no body of {self._description.mjcf}"
             )
+        self._camera_body = body
         T_body_camera = self._description.T_body_camera
         # MuJoCo's cameras look along -z with y up.
         T_body_mujoco_camera = Pose(T_body_camera.R @ rotation_x(np.pi), T_body_camera.p)
-        self._camera = body.add("camera", name="depth", pos=T_body_camera.p, quat=T_body_mujoco_camera.quaternion_wxyz)
+        body.add("camera", name="depth", pos=T_body_camera.p, quat=T_body_mujoco_camera.quaternion_wxyz)
         # Behind the lens, where the camera does not see it.
-        self._housing = body.add(
+        body.add(
             "geom",
             name="camera_housing",
             type="box",
             size=_HOUSING_HALF_SIZE,
             pos=T_body_camera.p - _HOUSING_BEHIND_LENS * T_body_camera.R[:, 2],
             quat=T_body_camera.quaternion_wxyz,
-            dclass="frame",
+            group=2,
+            contype=0,
+            conaffinity=0,
+            mass=0,
+            rgba=_HOUSING_COLOR,
         )
 
     @property
@@ -52,19 +58,6 @@ class Biped(composer.Entity):
         return self._description
 
     @property
-    def camera(self) -> mjcf.Element:
-        """The depth camera, for MuJoCo's renderers."""
-        return self._camera
-
-    @property
     def camera_body(self) -> mjcf.Element:
         """The body that carries the depth camera."""
-        return self._camera.parent
-
-    @property
-    def sole_sites(self) -> tuple[mjcf.Element, mjcf.Element]:
-        """Sites at the centres of the left and the right sole."""
-        sites = [site for side in ("left", "right") if (site := self._mjcf_root.find("site", f"{side}_sole"))]
-        if len(sites) != 2:
-            raise ValueError(f"{self._description.mjcf}: needs sites `left_sole` and `right_sole`")
-        return sites[0], sites[1]
+        return self._camera_body

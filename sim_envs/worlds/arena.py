@@ -9,10 +9,8 @@ from dm_control import composer, mjcf
 from sim_envs.courses import Box, Course
 from skills.geometry.pose import Pose
 
-# Contact and integration settings of the physics world; measured to walk at 1 ms with four contact points a foot.
-_OPTIONS = {"timestep": 0.001, "cone": "elliptic", "impratio": 10.0, "integrator": "implicitfast", "iterations": 20}
-_BOX_COLOURS = {"ground": (0.56, 0.58, 0.60, 1.0)}
-_BLOCK_COLOUR = (0.74, 0.70, 0.64, 1.0)
+_BLOCK_COLOR = (0.76, 0.70, 0.62, 1.0)
+_COLORS = {"pad": (0.60, 0.62, 0.64, 1.0), "base": (0.48, 0.47, 0.46, 1.0), "pallet": (0.74, 0.60, 0.42, 1.0)}
 
 
 class CourseArena(composer.Arena):
@@ -21,10 +19,7 @@ class CourseArena(composer.Arena):
     def _build(self, course: Course) -> None:
         self._mjcf_root = mjcf.RootElement(model="course")
         root: Any = self._mjcf_root
-        # The free joint's frame has no mass of its own.
         root.compiler.angle = "radian"
-        for name, value in _OPTIONS.items():
-            setattr(root.option, name, value)
         self._bodies = {box.name: self._add_box(box) for box in course.boxes}
 
     def _add_box(self, box: Box) -> Any:
@@ -32,14 +27,9 @@ class CourseArena(composer.Arena):
         root: Any = self._mjcf_root
         # A mocap body is static to the physics, yet may be moved.
         body = root.worldbody.add("body", name=box.name, pos=pose.p, quat=pose.quaternion_wxyz, mocap=True)
-        colour = _BOX_COLOURS.get(box.kind, _BLOCK_COLOUR)
-        body.add("geom", name=box.name, type="box", size=[0.5 * s for s in box.size], rgba=colour, mass=0)
+        color = _COLORS.get(box.kind, _BLOCK_COLOR)
+        body.add("geom", name=box.name, type="box", size=[0.5 * s for s in box.size], rgba=color, mass=0)
         return body
-
-    @property
-    def box_bodies(self) -> dict[str, Any]:
-        """Body of each box by name, in the order of the course."""
-        return self._bodies
 
     def move_box(self, physics: mjcf.Physics, name: str, T_world_box: Pose) -> None:
         """Put one box elsewhere; it is there after the next kinematics or step."""
