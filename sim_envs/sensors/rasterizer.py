@@ -75,20 +75,20 @@ def _raster(
     face: NDArray[np.int32],
 ) -> NDArray[np.float32]:
     image = np.zeros((camera.height, camera.width), dtype=np.float32)
+    R_camera_world = T_world_camera.R.T
+    R_camera_geom = R_camera_world @ geom_rotations[mesh.geom_ids]
+    p_camera = (geom_positions[mesh.geom_ids] - T_world_camera.p) @ R_camera_world.T
+    centers_camera = np.einsum("gij,gj->gi", R_camera_geom, mesh.centers_geom) + p_camera
     _draw_geoms(
-        mesh.geom_ids,
+        np.flatnonzero(_in_view(centers_camera, mesh.radii, camera)),
+        np.ascontiguousarray(R_camera_geom),
+        p_camera,
         mesh.vertices_geom,
         mesh.vertex_start,
         mesh.faces,
         mesh.face_start,
-        mesh.centers_geom,
-        mesh.radii,
         mesh.one_sided,
-        np.ascontiguousarray(geom_positions, dtype=np.float64).reshape(-1, 3),
-        np.ascontiguousarray(geom_rotations, dtype=np.float64).reshape(-1, 3, 3),
-        np.ascontiguousarray(T_world_camera.R.T),
-        T_world_camera.p.copy(),
-        np.array([camera.fx, camera.fy, camera.cx, camera.cy, camera.far]),
+        np.array([camera.fx, camera.fy, camera.cx, camera.cy]),
         np.arange(camera.width, dtype=np.float32),
         image,
         face,
@@ -97,73 +97,47 @@ def _raster(
     return image
 
 
+def _in_view(centers_camera: Array, radii: Array, camera: PinholeCamera) -> NDArray[np.bool_]:
+    """Which spheres reach inside all planes that bound the view, (G,)."""
+    left, right = -camera.cx / camera.fx, (camera.width - 1 - camera.cx) / camera.fx
+    top, bottom = -camera.cy / camera.fy, (camera.height - 1 - camera.cy) / camera.fy
+    inward = np.array([(1, 0, -left), (-1, 0, right), (0, 1, -top), (0, -1, bottom), (0, 0, 1), (0, 0, -1)])
+    inward /= np.linalg.norm(inward, axis=1, keepdims=True)
+    offsets = np.array([0, 0, 0, 0, -_LENS, camera.far])
+    return (centers_camera @ inward.T + offsets + radii[:, None] >= 0).all(axis=1)
+
+
 @kernel
 def _draw_geoms(
-    geom_ids: NDArray[Any],
+    visible: NDArray[Any],
+    R_camera_geom: NDArray[Any],
+    p_camera: NDArray[Any],
     vertices: NDArray[Any],
     vertex_start: NDArray[Any],
     faces: NDArray[Any],
     face_start: NDArray[Any],
-    centers: NDArray[Any],
-    radii: NDArray[Any],
     one_sided: NDArray[Any],
-    positions: NDArray[Any],
-    rotations: NDArray[Any],
-    R_camera_world: NDArray[Any],
-    p_camera: NDArray[Any],
     optics: NDArray[Any],
     ramp: NDArray[Any],
     inverse_depth: NDArray[Any],
     face_image: NDArray[Any],
 ) -> None:
-    """Draw all geoms whose sphere touches the view."""
+    """Draw the faces of the visible geoms."""
     most_vertices = 0
-    for g in range(len(geom_ids)):
+    for g in visible:
         most_vertices = max(most_vertices, vertex_start[g + 1] - vertex_start[g])
     p = np.empty((most_vertices, 3))
     corners = np.empty((5, 3))
     edges = np.empty((5, 5))
-    R = np.empty((3, 3))
-    t = np.empty(3)
-    for g in range(len(geom_ids)):
-        geom = geom_ids[g]
-        for i in range(3):
-            t[i] = 0.0
-            for k in range(3):
-                t[i] += R_camera_world[i, k] * (positions[geom, k] - p_camera[k])
-                R[i, k] = 0.0
-                for m in range(3):
-                    R[i, k] += R_camera_world[i, m] * rotations[geom, m, k]
-        if _out_of_view(R, t, centers[g], radii[g], optics, inverse_depth.shape):
-            continue
-        first = vertex_start[g]
+    for g in visible:
+        first, closed = int(vertex_start[g]), bool(one_sided[g])
         for j in range(vertex_start[g + 1] - first):
-            x, y, z = vertices[first + j]
             for i in range(3):
-                p[j, i] = R[i, 0] * x + R[i, 1] * y + R[i, 2] * z + t[i]
+                p[j, i] = p_camera[g, i]
+                for k in range(3):
+                    p[j, i] += R_camera_geom[g, i, k] * vertices[first + j, k]
         for f in range(face_start[g], face_start[g + 1]):
-            _draw_face(f, faces[f], first, one_sided[g], p, corners, edges, optics, ramp, inverse_depth, face_image)
-
-
-@kernel
-def _out_of_view(
-    R: NDArray[Any], t: NDArray[Any], center: NDArray[Any], radius: float, optics: NDArray[Any], shape: tuple[int, int]
-) -> bool:
-    """Whether a sphere lies wholly outside one of the planes that bound the view."""
-    x = R[0, 0] * center[0] + R[0, 1] * center[1] + R[0, 2] * center[2] + t[0]
-    y = R[1, 0] * center[0] + R[1, 1] * center[1] + R[1, 2] * center[2] + t[1]
-    z = R[2, 0] * center[0] + R[2, 1] * center[1] + R[2, 2] * center[2] + t[2]
-    fx, fy, cx, cy, far = optics
-    if z + radius < _LENS or z - radius > far:
-        return True
-    left, right = -cx / fx, (shape[1] - 1 - cx) / fx
-    top, bottom = -cy / fy, (shape[0] - 1 - cy) / fy
-    return (
-        left * z - x > radius * np.sqrt(1 + left * left)
-        or x - right * z > radius * np.sqrt(1 + right * right)
-        or top * z - y > radius * np.sqrt(1 + top * top)
-        or y - bottom * z > radius * np.sqrt(1 + bottom * bottom)
-    )
+            _draw_face(f, faces[f], first, closed, p, corners, edges, optics, ramp, inverse_depth, face_image)
 
 
 @kernel
@@ -196,7 +170,7 @@ def _draw_face(
     if n < 3:
         return
 
-    fx, fy, cx, cy, _ = optics
+    fx, fy, cx, cy = optics
     height, width = inverse_depth.shape
     u_min, u_max, v_min, v_max = np.inf, -np.inf, np.inf, -np.inf
     for k in range(n):
