@@ -12,6 +12,7 @@ import dataclasses
 import struct
 from collections.abc import Callable
 from enum import Enum
+from functools import lru_cache
 from hashlib import blake2b, sha256
 from typing import Any
 
@@ -94,13 +95,18 @@ def _append_bytes(out: bytearray, value: bytes) -> bool:
 
 
 def _append_array(out: bytearray, value: np.ndarray) -> bool:
-    kind = value.dtype.str.encode()
-    if value.dtype.hasobject:
-        raise CanonicalError("an array of Python objects has no canonical bytes")
-    out += struct.pack(f"<cB{len(kind)}sB{value.ndim}Q", b"a", len(kind), kind, value.ndim, *value.shape)
+    out += _array_head(value.dtype, value.shape)
     # An image is hashed where it lies, by the hash for which processors have instructions.
     out += value.tobytes() if value.nbytes <= _BULK_BYTES else sha256(np.ascontiguousarray(value).data).digest()
     return not value.flags.writeable
+
+
+@lru_cache(maxsize=1024)
+def _array_head(dtype: np.dtype[Any], shape: tuple[int, ...]) -> bytes:
+    if dtype.hasobject:
+        raise CanonicalError("an array of Python objects has no canonical bytes")
+    kind = dtype.str.encode()
+    return struct.pack(f"<cB{len(kind)}sB{len(shape)}Q", b"a", len(kind), kind, len(shape), *shape)
 
 
 def _append_number(out: bytearray, value: np.generic) -> bool:

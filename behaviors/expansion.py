@@ -119,6 +119,8 @@ class _Expander:
                 apart = _Expander(self.registry, self.problems, Expansion(tree))
                 apart.used = self.used
                 apart.root(tree.root, _Scope(tree, "?", ports, (tree.name,)), f"/{tree.name}", tree.name)
+            if tree.trees is not definition.trees:
+                self.check_unused(tree)
 
     def _head(self, node: Node, path: str) -> Entry | None:
         """The kind and body of a node: `kind: body`, or the kind alone."""

@@ -15,12 +15,14 @@ class RobotView:
 
     Attributes:
         robot: the robot itself.
+        time: robot time at the start of the tick [s].
         events: step events since the last tick, oldest first; drained once, so that no leaf takes them from another.
         commands: names and arguments of the commands sent this tick, in order.
     """
 
     def __init__(self, robot: Robot) -> None:
         self.robot = robot
+        self.time = robot.time
         self.events: tuple[StepEvent, ...] = ()
         self.commands: list[Command] = []
         self._state: RobotState | None = None
@@ -31,12 +33,8 @@ class RobotView:
         self._state = None
         self._status = None
         self.commands = []
+        self.time = self.robot.time
         self.events = self.robot.drain_events()
-
-    @property
-    def time(self) -> float:
-        """Robot time [s]."""
-        return self.robot.time
 
     def state(self) -> RobotState:
         """The estimated state of this tick."""

@@ -12,7 +12,6 @@ tree.shutdown()
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -28,11 +27,11 @@ from behaviors.node import Node
 from behaviors.robot import Robot
 from behaviors.robot_view import RobotView
 from behaviors.spec import TreeSpec
+from behaviors.timetable import Timetable
 from behaviors.trace import ParameterChange, Trace
 from strict_yaml import nearest
 
 DEFAULT_RATE = 50.0
-_TIME_TOLERANCE = 1e-9
 
 
 class Outcome(Enum):
@@ -60,10 +59,6 @@ class Transition:
     reason: str
 
 
-class ClockError(RuntimeError):
-    """The robot's clock ran backwards."""
-
-
 class Tree:
     """A tree joined to a robot.
 
@@ -77,7 +72,7 @@ class Tree:
         reason: why it ended; empty while it runs.
         trace: hash and file of the run.
         transitions: statuses that the last tick changed, in the order of `nodes`.
-        lateness: robot time by which the last tick came after its due time [s].
+        timetable: when ticks are due, and how late the last one was.
     """
 
     def __init__(
@@ -109,7 +104,7 @@ class Tree:
             ParameterError: where a setting is out of range.
         """
         self.spec = spec
-        self.period = 1.0 / rate
+        self.timetable = Timetable(rate)
         self.context = Context(RobotView(robot), executor or Executor(), dict(parameters or {}))
         self.blackboard = Blackboard()
         for key, declared in spec.keys.items():
@@ -124,7 +119,6 @@ class Tree:
         self.reason = ""
         self.trace = trace or Trace()
         self.transitions: tuple[Transition, ...] = ()
-        self.lateness = 0.0
         self._slots = self.blackboard.slots
         self._nodes_by_path = {node.path: node for node in self.nodes}
         self._statuses = [node.status for node in self.nodes]
@@ -132,17 +126,13 @@ class Tree:
         self._pending_events: list[OperatorEvent] = []
         self._changes: list[ParameterChange] = []
         self._ticks = 0
-        self._first_tick_time: float | None = None
-        self._due_index = 0
         self._is_set_up = False
         self._is_stopped = False
 
     @property
     def next_tick_time(self) -> float:
         """Robot time at which the next tick is due [s]."""
-        if self._first_tick_time is None:
-            return self.context.robot.time
-        return self._first_tick_time + self._due_index * self.period
+        return self.timetable.next_time(self.context.robot.robot.time)
 
     @property
     def faults(self) -> tuple[Fault, ...]:
@@ -251,24 +241,14 @@ class Tree:
         self._ticks += 1
         context.operator_events, self._pending_events = tuple(self._pending_events), []
         context.robot.begin_tick()
-        self._take_time(context.robot.time)
+        context.time = context.robot.time
+        self.timetable.tick_at(context.time)
         inputs, self._pending_inputs = self._pending_inputs, []
         for key, value in inputs:
             self.blackboard.slot(key, None).write(value)
         for job in context.executor.deliver(context.time):
             if job.digest is not None:
                 self.trace.prime(job.result, job.digest)
-
-    def _take_time(self, time: float) -> None:
-        if self._first_tick_time is None:
-            self._first_tick_time = time
-        before, self.context.time = self.context.time, time
-        self.lateness = time - self.next_tick_time
-        # Ticks that were missed are not made up for: the robot is where it is now.
-        elapsed = (time - self._first_tick_time) / self.period
-        self._due_index = math.floor(elapsed + _TIME_TOLERANCE / self.period) + 1
-        if time < before:
-            raise ClockError(f"robot time went back from {before:.6f} s to {time:.6f} s")
 
     def _conclude(self) -> None:
         """End the run where the root is done, or where anything raised in this tick."""

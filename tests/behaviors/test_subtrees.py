@@ -117,13 +117,14 @@ root:
 
 
 def test_problems_of_an_included_file_are_told_at_their_place(tmp_path: Path):
-    (tmp_path / "part.yaml").write_text("tree: part\nroot: {sequnce: [Scripted]}\n")
+    spare = "trees: {spare: {root: Skripted}}"
+    (tmp_path / "part.yaml").write_text(f"tree: part\nroot: {{sequnce: [Scripted]}}\n{spare}\n")
     main = tmp_path / "main.yaml"
     main.write_text("tree: t\ninclude: [part.yaml, none.yaml]\nroot: {Skripted: {}}\n")
     with pytest.raises(YamlError) as error:
         load_tree(main, toys)
     places = [(Path(problem.location.file).name, problem.location.line) for problem in error.value.problems]
-    assert places == [("main.yaml", 2), ("main.yaml", 3), ("none.yaml", 1), ("part.yaml", 2)]
+    assert places == [("main.yaml", 2), ("main.yaml", 3), ("none.yaml", 1), ("part.yaml", 2), ("part.yaml", 3)]
 
 
 def test_files_that_include_one_another_are_refused(tmp_path: Path):

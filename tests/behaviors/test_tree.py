@@ -35,7 +35,7 @@ def test_ticks_are_due_at_multiples_of_the_period_on_the_robots_clock():
         assert tree.next_tick_time == pytest.approx(7.0 + index / 30.0, abs=1e-12)
         robot.time = tree.next_tick_time
         tree.tick()
-        assert tree.lateness == pytest.approx(0.0, abs=1e-12)
+        assert tree.timetable.lateness == pytest.approx(0.0, abs=1e-12)
 
 
 def test_missed_ticks_are_not_made_up_for():
@@ -43,7 +43,7 @@ def test_missed_ticks_are_not_made_up_for():
     tree.tick()
     robot.time = 0.113
     tree.tick()
-    assert tree.lateness == pytest.approx(0.093)
+    assert tree.timetable.lateness == pytest.approx(0.093)
     assert tree.next_tick_time == pytest.approx(0.12)
 
 
@@ -166,3 +166,15 @@ def test_all_leaves_of_a_tick_see_the_same_robot():
     run(tree, robot, 1)
     assert tree.context.robot.status() is tree.context.robot.status()
     assert robot.reads == 1  # type: ignore[attr-defined]
+
+
+def test_a_leaf_whose_input_is_taken_away_is_stopped_and_waits():
+    tree, robot = make("{tree: t, ports: {in: {number: float}}, root: {Square: {in: [number], out: [square]}}}")
+    tree.set_input("number", 2.0)
+    run(tree, robot, 2)
+    tree.set_input("number", None)
+    run(tree, robot, 20)
+    assert tree.root.reason == 'waits for number: nothing on "number"'
+    assert [job.outcome.value for job in tree.drain_jobs()] == ["cancelled"]
+    assert tree.blackboard["square"] is None
+    tree.shutdown()

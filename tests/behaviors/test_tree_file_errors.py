@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+import re
 from pathlib import Path
 
 import pytest
@@ -292,3 +294,19 @@ def test_the_deepest_tree_allowed_can_be_ticked():
     tree, robot = make(f"tree: t\nroot: {{subtree: {{tree: t0}}}}\ntrees:\n{trees}  t99: {{root: Scripted}}\n")
     run(tree, robot, 1)
     assert len(tree.nodes) == 100 and not tree.faults
+
+
+def test_a_mutilated_file_is_read_or_refused_with_places_but_never_crashes():
+    chance = random.Random(0)
+    texts = [text for text, _ in CORPUS.values()]
+    pieces = [*"[]{}:-,3~", "\n", "  ", "&a ", "*a", "!!set", *re.findall(r"[a-z_]+", NODES), "child", "in", "out"]
+    for _ in range(300):
+        text = chance.choice(texts)
+        for _ in range(chance.randint(1, 4)):
+            place = chance.randrange(len(text) + 1)
+            text = text[:place] + chance.choice(["", chance.choice(pieces)]) + text[place + chance.randrange(6) :]
+        try:
+            parse_tree(text, toys, "t.yaml")
+        except YamlError as error:
+            assert error.problems
+            assert all(problem.location.line >= 1 for problem in error.problems)
