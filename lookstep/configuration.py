@@ -133,7 +133,7 @@ def _preset(preset: str | None, problems: list[Problem]) -> dict[str, Node]:
     names = preset_names()
     path = shipped_folder("config") / "presets" / f"{preset}.yaml" if preset in names else Path(preset)
     if preset not in names and path.suffix != ".yaml":
-        place = Location("--preset", 1, 1)
+        place = Location("--preset", 0, 0)
         message = f'unknown preset "{preset}"{nearest(preset, names)} (presets: {", ".join(names)}, or a .yaml file)'
         raise YamlError([Problem(place, message)])
     layer = {}
@@ -148,7 +148,7 @@ def _preset(preset: str | None, problems: list[Problem]) -> dict[str, Node]:
 def _assignments(assignments: Iterable[str], problems: list[Problem]) -> dict[str, Node]:
     layer: dict[str, Node] = {}
     for text in assignments:
-        place = Location(f"--set {text}", 1, 1)
+        place = Location(f"--set {text}", 0, 0)
         key, equals, value = text.partition("=")
         subject, dot, name = key.strip().partition(".")
         if not (equals and dot and name):
@@ -181,7 +181,7 @@ def _merge(nodes: list[Node], subject: str) -> Node:
         if node.kind is not Kind.MAPPING:
             return node
         entries.update({entry.key: entry for entry in node.entries})
-    location = nodes[-1].location if nodes else Location(subject, 1, 1)
+    location = nodes[-1].location if nodes else Location(subject, 0, 0)
     return _mapping(location, tuple(entries.values()))
 
 

@@ -21,4 +21,4 @@ def tree_path(name: str) -> Path:
     if path.suffix in (".yaml", ".yml") or path.exists():
         return path
     message = f'unknown tree "{name}"{nearest(name, names)} (shipped: {", ".join(names)}; or a .yaml file)'
-    raise YamlError([Problem(Location(name, 1, 1), message)])
+    raise YamlError([Problem(Location("--tree", 0, 0), message)])

@@ -5,9 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-import behaviors
 from lookstep.trees import tree_path
-from sim_envs.courses import load_course
 from strict_yaml import Kind, YamlError, load_document
 
 NAME = "check"
@@ -36,6 +34,9 @@ def execute(options: argparse.Namespace) -> int:
 
 
 def _check(name: str) -> str:
+    import behaviors
+    from sim_envs.courses import load_course
+
     path = tree_path(name)
     document = load_document(path)
     if document.kind is Kind.MAPPING and document.get("tree") is None and document.get("start") is not None:

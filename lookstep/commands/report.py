@@ -11,7 +11,7 @@ from rich.progress import Progress as Bar
 from rich.table import Table
 
 from lookstep.moment import Moment
-from lookstep.run import RunOptions
+from lookstep.options import RunOptions
 from lookstep.summary import Outcome, SkillTiming, Summary
 from skills.walking import StepEventKind
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from lookstep.commands.report import Progress, print_summary
 from lookstep.errors import UserError
-from lookstep.run import EXECUTORS, WORLDS, RunOptions, run_walk
-from lookstep.summary import Outcome
+from lookstep.options import EXECUTORS, WORLDS, RunOptions
 
 NAME = "run"
 HELP = "walk one course and print the figures"
@@ -60,8 +58,13 @@ def execute(options: argparse.Namespace) -> int:
     )
     if options.json is not None and not options.json.parent.is_dir():
         raise UserError(f"--json {options.json}: the folder {options.json.parent} does not exist")
+    # Loading the simulation takes seconds; whoever asks for help need not wait for it.
+    from lookstep.commands.report import Progress, print_summary
+    from lookstep.summary import Outcome
+    from lookstep.walk import walk
+
     with Progress() as progress:
-        summary = run_walk(run_options, progress)
+        summary = walk(run_options, progress)
     print_summary(summary, run_options)
     if options.json is not None:
         summary.write(options.json)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 
-import behaviors
 from lookstep.trees import tree_path
 
 NAME = "tree"
@@ -19,5 +18,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Draw it."""
+    import behaviors
+
     print(behaviors.draw(behaviors.load_tree(tree_path(options.file))))
     return 0

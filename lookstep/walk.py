@@ -9,7 +9,6 @@ import dataclasses
 import time as wall
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from behaviors import Executor, ExecutorMode, OperatorEvent, SettingError, Trace, Tree, TreeSpec, load_tree
@@ -17,6 +16,7 @@ from behaviors import Outcome as TreeOutcome
 from lookstep.configuration import Assignments, Configuration, load_configuration, split_assignments
 from lookstep.errors import UserError
 from lookstep.moment import Moment, Observer
+from lookstep.options import RunOptions
 from lookstep.statistics import Statistics
 from lookstep.summary import Outcome, Summary, installed_versions
 from lookstep.trees import tree_path
@@ -27,46 +27,10 @@ from skills.body_path import Goal
 from skills.parameters import ParameterError
 from skills.walking import WalkingPhase
 
-WORLDS = ("kinematic",)
-EXECUTORS = tuple(mode.value for mode in ExecutorMode)
-
 TICK_RATE = 50.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class RunOptions:
-    """What to run.
-
-    Attributes:
-        tree: name of a shipped tree, or a YAML file.
-        course: name of a generator or shipped course, or a YAML file.
-        seed: of the course and of the sensor noise.
-        world: kind of simulation.
-        executor: how long-running skills are run, `lockstep` or `realtime`.
-        speed: robot time per wall time; as fast as possible where None, which realtime does not allow.
-        goal: x [m], y [m], yaw [rad]; the course's own where None.
-        time_limit: robot time after which the run ends [s].
-        preset: name of a shipped preset, or a YAML file.
-        assignments: `subject.key=value`, `course.option=value` or `/node/path.key=value`.
-        record: recording file to write.
-        out: folder for `summary.json` and `trace.jsonl`.
-    """
-
-    tree: str = "look_and_step"
-    course: str = "rough"
-    seed: int = 0
-    world: str = "kinematic"
-    executor: str = "lockstep"
-    speed: float | None = None
-    goal: tuple[float, float, float] | None = None
-    time_limit: float = 180.0
-    preset: str | None = None
-    assignments: tuple[str, ...] = ()
-    record: Path | None = None
-    out: Path | None = None
-
-
-def run_walk(options: RunOptions, *observers: Observer) -> Summary:
+def walk(options: RunOptions, *observers: Observer) -> Summary:
     """Walk once.
 
     Args:

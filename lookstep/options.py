@@ -1,0 +1,42 @@
+"""What to run: the options of one walk, as the command line and Python give them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+WORLDS = ("kinematic",)
+EXECUTORS = ("lockstep", "realtime")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RunOptions:
+    """What to run.
+
+    Attributes:
+        tree: name of a shipped tree, or a YAML file.
+        course: name of a generator or shipped course, or a YAML file.
+        seed: of the course and of the sensor noise.
+        world: kind of simulation.
+        executor: how long-running skills are run, `lockstep` or `realtime`.
+        speed: robot time per wall time; as fast as possible where None, which realtime does not allow.
+        goal: x [m], y [m], yaw [rad]; the course's own where None.
+        time_limit: robot time after which the run ends [s].
+        preset: name of a shipped preset, or a YAML file.
+        assignments: `subject.key=value`, `course.option=value` or `/node/path.key=value`.
+        record: recording file to write.
+        out: folder for `summary.json` and `trace.jsonl`.
+    """
+
+    tree: str = "look_and_step"
+    course: str = "rough"
+    seed: int = 0
+    world: str = "kinematic"
+    executor: str = "lockstep"
+    speed: float | None = None
+    goal: tuple[float, float, float] | None = None
+    time_limit: float = 180.0
+    preset: str | None = None
+    assignments: tuple[str, ...] = ()
+    record: Path | None = None
+    out: Path | None = None
