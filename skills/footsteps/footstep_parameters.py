@@ -42,6 +42,7 @@ class FootstepParameters:
     share: float = parameter(0.97, unit="1", meaning="smallest supported share of the sole", minimum=0.1, maximum=1.0)
     support_below: float = parameter(0.015, unit="m", meaning="ground this far below the sole supports it", minimum=0.0)
     ground_above: float = parameter(0.015, unit="m", meaning="highest ground above the sole, under it", minimum=0.0)
+    sole_edge: float = parameter(0.01, unit="m", meaning="ground so near counts as under it", minimum=0.0, maximum=0.1)
     cliff_height: float = parameter(0.05, unit="m", meaning="highest ground above the sole, beside it", minimum=0.0)
     cliff_toe: float = parameter(0.04, unit="m", meaning="distance before the toe without a cliff", minimum=0.0)
     cliff_side: float = parameter(0.02, unit="m", meaning="distance from heel and sides without a cliff", minimum=0.0)
@@ -80,7 +81,7 @@ class FootstepParameters:
     heading_tolerance: float = parameter(0.35, unit="rad", meaning="sub-goal tolerance of the heading", minimum=0.0)
     goal_tolerance: float = parameter(0.06, unit="m", meaning="distance of each foot from its place at the goal")
     goal_yaw_tolerance: float = parameter(0.13, unit="rad", meaning="heading of each foot off the goal's", minimum=0.0)
-    minimum_progress: float = parameter(0.05, unit="m", meaning="progress that a partial plan must make", minimum=0.0)
+    minimum_progress: float = parameter(0.1, unit="m", meaning="progress that a partial plan must make", minimum=0.0)
 
 
 @parameters

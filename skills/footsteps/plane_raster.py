@@ -20,17 +20,17 @@ Indices = NDArray[np.int64]
 
 UNSEEN, FOOTHOLD, NO_GROUND, TOO_STEEP, GROUND_ABOVE, TOO_SMALL, AT_CLIFF = range(7)
 SNAP_REASONS = ("", "", "no ground", "too steep", "ground above the sole", "foothold too small", "at a cliff")
-SAMPLE_SPACING = 0.013
+SAMPLE_SPACING = 0.01
 
 
 # What a sole may stand on, for the kernels: fields are named after the parameters; `under` counts the samples that lie
-# under the sole.
+# under the sole, `close` those and the ones right beside it.
 SNAP_LIMITS = np.dtype(
     [
         (name, np.float64)
         for name in (
             *("tilt_tangent", "share", "support_below", "ground_above", "cliff_height"),
-            "under",
+            *("under", "close"),
         )
     ]
 )
@@ -181,7 +181,7 @@ def snap_sole(
     if a * a + b * b > limits.tilt_tangent * limits.tilt_tangent:
         return TOO_STEEP
     cos, sin = np.cos(yaw), np.sin(yaw)
-    under = int(limits.under)
+    under, close = int(limits.under), int(limits.close)
     unsupported = 0
     for n in range(samples.shape[0]):
         u, v = samples[n, 0], samples[n, 1]
@@ -194,12 +194,12 @@ def snap_sole(
         rise = -np.inf
         if there >= 0:
             rise = (planes[there, 0] - a) * px + (planes[there, 1] - b) * py + planes[there, 2] - c
-        if n >= under:
+        if n >= close:
             if rise > limits.cliff_height:
                 return AT_CLIFF
         elif rise > limits.ground_above:
             return GROUND_ABOVE
-        elif rise < -limits.support_below:
+        elif n < under and rise < -limits.support_below:
             unsupported += 1
             out[3] = 1.0 - unsupported / limits.under
             if out[3] < limits.share:
@@ -257,31 +257,33 @@ def plane_heights(cells: Cells, planes: Array, resolution: float, corner: Array,
     return heights
 
 
-def sole_samples(length: float, width: float, before_toe: float, beside: float) -> tuple[Array, int]:
-    """Points at which a sole feels the ground: those under it to its very edge, the outer ones first, then around it.
+def sole_samples(length: float, width: float, edge: float, toe: float, beside: float) -> tuple[Array, int, int]:
+    """Points at which a sole feels the ground: under it to its very edge, right beside it, and farther around it.
 
     Args:
         length: length of the sole [m].
         width: its width [m].
-        before_toe: how far before the toe it feels for cliffs [m].
+        edge: how far from the sole is right beside it [m].
+        toe: how far before the toe it feels for cliffs [m].
         beside: how far behind the heel and beside the sides [m].
 
     Returns:
-        Points in the sole frame, (N, 2), and how many of them are under the sole.
+        Points in the sole frame, (N, 2), each kind from the outside in; how many are under it, and how many under it
+        or right beside it.
     """
-    x = _stations(-0.5 * length - beside, -0.5 * length, 0.5 * length, 0.5 * length + before_toe)
-    y = _stations(-0.5 * width - beside, -0.5 * width, 0.5 * width, 0.5 * width + beside)
+    x = _stations(*(-0.5 * length - d for d in (beside, edge, 0.0)), *(0.5 * length + d for d in (0.0, edge, toe)))
+    y = _stations(*(-0.5 * width - d for d in (beside, edge, 0.0)), *(0.5 * width + d for d in (0.0, edge, beside)))
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
-    outwards = np.max(np.abs(points) / (0.5 * length, 0.5 * width), axis=1)
-    under = outwards <= 1.0
-    inner, around = points[under], points[~under]
-    return np.concatenate((inner[np.argsort(-outwards[under], kind="stable")], around)), len(inner)
+    outside = np.max(np.abs(points) - (0.5 * length, 0.5 * width), axis=1)
+    kind = np.searchsorted((1e-9, edge + 1e-9), outside)
+    order = np.lexsort((-outside, kind))
+    return points[order], int(np.sum(kind == 0)), int(np.sum(kind <= 1))
 
 
 def _stations(*ends: float) -> Array:
     """Coordinates from the first end to the last that hold all ends and lie no farther apart than the spacing."""
     pieces = [
-        np.linspace(low, high, int(np.ceil((high - low) / SAMPLE_SPACING)), endpoint=False)
+        np.linspace(low, high, int(np.ceil((high - low) / SAMPLE_SPACING - 1e-9)), endpoint=False)
         for low, high in pairwise(ends)
     ]
     return np.concatenate((*pieces, ends[-1:]))

@@ -218,10 +218,15 @@ def slopes(T_world_sole: Pose) -> tuple[float, float]:
 @lru_cache(maxsize=8)
 def foothold_rules(parameters: FootstepParameters) -> tuple[NDArray[np.void], Array]:
     """The limits on a foothold as the kernels take them, one `SNAP_LIMITS`, and where the sole feels the ground."""
-    samples, under = sole_samples(
-        parameters.sole_length, parameters.sole_width, parameters.cliff_toe, parameters.cliff_side
+    samples, under, close = sole_samples(
+        parameters.sole_length,
+        parameters.sole_width,
+        parameters.sole_edge,
+        max(parameters.cliff_toe, parameters.sole_edge),
+        max(parameters.cliff_side, parameters.sole_edge),
     )
-    limits = pack(SNAP_LIMITS, parameters, {"tilt_tangent": np.tan(parameters.tilt), "under": under})
+    derived = {"tilt_tangent": float(np.tan(parameters.tilt)), "under": under, "close": close}
+    limits = pack(SNAP_LIMITS, parameters, derived)
     limits.flags.writeable = False
     return limits, readonly(samples)
 
