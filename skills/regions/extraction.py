@@ -203,7 +203,9 @@ def _reason_against(area: float, R: Array, depth: float, bend: float, parameters
         return f"slope {np.rad2deg(slope):.0f} deg, limit {np.rad2deg(parameters.slope_max):.0f} deg"
     if depth < parameters.distance_min:
         return f"{depth:.2f} m from the camera, limit {parameters.distance_min:g} m: own body"
-    if not bend <= parameters.bend_max:
+    if math.isinf(bend):
+        return "too thin to fit a plane"
+    if bend > parameters.bend_max:
         return f"bent by {1e3 * bend:.1f} mm, limit {1e3 * parameters.bend_max:g} mm"
     return ""
 

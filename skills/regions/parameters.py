@@ -93,7 +93,7 @@ class MemoryParameters:
         0.2, unit="1", minimum=0.0, maximum=1.0, meaning="least share of an old region to be seen before it is judged"
     )
     covered_share: float = parameter(
-        0.9, unit="1", minimum=0.0, maximum=1.0, meaning="an old region covered this far by newer ones is dropped"
+        0.98, unit="1", minimum=0.0, maximum=1.0, meaning="an old region covered this far by newer ones is dropped"
     )
     regions_max: int = parameter(150, unit="1", minimum=1, maximum=10000, meaning="the oldest beyond this are dropped")
     cell: float = parameter(0.025, unit="m", minimum=0.005, maximum=0.1, meaning="edge of the cells for comparing")

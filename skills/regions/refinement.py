@@ -26,7 +26,7 @@ def refine_regions(
 
     Returns:
         The labels of cells with their planes, and how much each region is bent: the standard deviation of its inner
-        cells' means about its plane, (R,) [m].
+        cells' means about its plane, (R,) [m]; infinite where it has too few.
     """
     size = patches.size // 2
     rows, columns = coarse.labels.shape
@@ -40,7 +40,7 @@ def refine_regions(
     labels = _majority(labels)
     planes = coarse.planes.copy()
     sums, bend = np.zeros((len(planes), SUMS)), np.zeros(len(planes))
-    _refit(labels, inverse_depth, lens, size, sums, planes, bend)
+    _refit(labels, inverse_depth, lens, size, parameters.patches_min, sums, planes, bend)
     return Segmentation(labels, planes, coarse.sigma), bend
 
 
@@ -134,7 +134,14 @@ def _majority(labels: Labels) -> Labels:
 
 @kernel
 def _refit(
-    labels: Labels, inverse_depth: Array, lens: Array, size: int, sums: Array, planes: Array, bend: Array
+    labels: Labels,
+    inverse_depth: Array,
+    lens: Array,
+    size: int,
+    cells_min: int,
+    sums: Array,
+    planes: Array,
+    bend: Array,
 ) -> None:
     rows, columns = labels.shape
     for row in range(1, rows - 1):
@@ -163,6 +170,6 @@ def _refit(
                 s[9] += w * w
     plane = np.empty(3)
     for label in range(planes.shape[0]):
-        bend[label] = fit_plane(sums[label], plane)
-        if sums[label, 0] >= 12.0 and np.isfinite(bend[label]):
+        bend[label] = fit_plane(sums[label], plane) if sums[label, 0] >= cells_min else np.inf
+        if np.isfinite(bend[label]):
             planes[label] = plane

@@ -9,6 +9,7 @@ frame has shown, the ground is assumed to go on a little around its sole.
 from __future__ import annotations
 
 from collections import Counter
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -53,52 +54,51 @@ class RegionMemory:
             image: the newest frame; it tells where the camera is, and through which old regions it sees.
         """
         reasons: Counter[str] = Counter()
-        kept = self._remember(regions, stance, image, reasons)
+        is_key = self._is_key(image.T_world_camera)
+        kept = self._remember(regions, stance, image, is_key, reasons)
         known = (*kept, *regions.regions)
-        supports = tuple(
-            self._support(stance.sole(side), regions.time)
-            for side in Side
-            if not self._stands_on(stance.sole(side), known)
-        )
-        if self._is_key(image.T_world_camera):
-            self._T_world_key = image.T_world_camera
-            self._kept = known
-        else:
-            self._kept = kept
+        unseen = [side for side in Side if not self._stands_on(stance.sole(side), known)]
+        supports = tuple(self._support(stance.sole(side), regions.time) for side in unseen)
+        self._kept = kept
+        if is_key:
+            self._T_world_key, self._kept = image.T_world_camera, known
         self._dropped = tuple(sorted(reasons.items()))
         return PlanarRegions((*supports, *known), regions.time, regions.frame_id)
 
     def _remember(
-        self, newest: PlanarRegions, stance: Stance, image: DepthImage, reasons: Counter[str]
+        self, newest: PlanarRegions, stance: Stance, image: DepthImage, is_key: bool, reasons: Counter[str]
     ) -> tuple[PlanarRegion, ...]:
         """The old regions that still hold; counts why the others do not."""
         grid = _HeightGrid(stance.mid_feet, self.parameters)
         for region in newest.regions:
-            grid.paint(region)
+            grid.paint(grid.footprint(region))
         grid.freeze()
         kept: list[PlanarRegion] = []
         for region in reversed(self._kept):
-            reason = self._reason_to_forget(region, newest.time, grid, image)
+            footprint = grid.footprint(region)
+            reason = self._reason_to_forget(region, newest.time, grid.compare(footprint), image)
+            # A frame that will not be kept replaces nothing: the next one may see less.
+            if reason == COVERED and not is_key:
+                reason = ""
             if not reason and len(kept) + len(newest.regions) >= self.parameters.regions_max:
                 reason = TOO_MANY
             if reason:
                 reasons[reason] += 1
             else:
                 kept.append(region)
-                grid.paint(region)
+                grid.paint(footprint)
         return tuple(reversed(kept))
 
-    def _reason_to_forget(self, region: PlanarRegion, now: float, grid: _HeightGrid, image: DepthImage) -> str:
+    def _reason_to_forget(self, region: PlanarRegion, now: float, cells: _Comparison, image: DepthImage) -> str:
         parameters = self.parameters
         if now - region.time > parameters.age_max:
             return EXPIRED
-        inside, covered, seen, differing = grid.compare(region)
-        if inside == 0:
+        if cells.inside == 0:
             return FAR
-        if covered >= parameters.covered_share * inside:
-            return COVERED
-        if seen >= parameters.changed_share * inside and differing > 0.5 * seen:
+        if cells.seen >= parameters.changed_share * cells.inside and cells.differing > 0.5 * cells.seen:
             return CHANGED
+        if cells.covered >= parameters.covered_share * cells.inside:
+            return COVERED
         if _seen_through(region, image, parameters):
             return VANISHED
         return ""
@@ -134,6 +134,23 @@ class RegionMemory:
         return PlanarRegion(T_world_sole, pad, (pad,), float(4.0 * half[0] * half[1]), time)
 
 
+class _Footprint(NamedTuple):
+    """A window of the grid around a region, the region's cells in it, and its height in each."""
+
+    window: tuple[slice, slice]
+    mask: NDArray[np.bool_]
+    heights: Array
+
+
+class _Comparison(NamedTuple):
+    """Cells of a region: all, covered by newer regions, seen by the newest frame, and seen there at another height."""
+
+    inside: int
+    covered: int
+    seen: int
+    differing: int
+
+
 class _HeightGrid:
     """Heights of regions on a horizontal grid around the feet."""
 
@@ -150,24 +167,26 @@ class _HeightGrid:
         """Take what was painted so far as the newest frame."""
         self._newest = self._height.copy()
 
-    def paint(self, region: PlanarRegion) -> None:
+    def paint(self, footprint: _Footprint) -> None:
         """Fill in a region where nothing newer is."""
-        window, mask, heights = self._footprint(region)
-        patch = self._height[window]
-        empty = mask & np.isnan(patch)
-        patch[empty] = heights[empty]
+        patch = self._height[footprint.window]
+        empty = footprint.mask & np.isnan(patch)
+        patch[empty] = footprint.heights[empty]
 
-    def compare(self, region: PlanarRegion) -> tuple[int, int, int, int]:
-        """Cells of a region; covered by newer ones; seen by the newest frame; seen at another height."""
-        window, mask, heights = self._footprint(region)
-        covered = mask & ~np.isnan(self._height[window])
+    def compare(self, footprint: _Footprint) -> _Comparison:
+        """Hold a region against what is newer; cells next to a covered one count as covered, outlines being noisy."""
+        window, mask, heights = footprint
+        known = ~np.isnan(self._height[window])
+        covered = (
+            mask & cv2.dilate(known.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool) if mask.size else mask
+        )
         newest = self._newest[window]
         seen = mask & ~np.isnan(newest)
         differing = seen & (np.abs(newest - heights) > self._same_height)
-        return tuple(int(np.count_nonzero(m)) for m in (mask, covered, seen, differing))  # type: ignore[return-value]
+        return _Comparison(*(int(np.count_nonzero(cells)) for cells in (mask, covered, seen, differing)))
 
-    def _footprint(self, region: PlanarRegion) -> tuple[tuple[slice, slice], NDArray[np.bool_], Array]:
-        """The window of the grid around a region, its cells there, and their heights."""
+    def footprint(self, region: PlanarRegion) -> _Footprint:
+        """The region's cells, without those outside the grid."""
         n = len(self._height)
         rings = [(region.T_world_region.R[:2, :2] @ ring.T).T for ring in (region.hull_region, *region.holes_region)]
         offset = (region.T_world_region.p[:2] - self._corner) / self._cell - 0.5
@@ -183,7 +202,7 @@ class _HeightGrid:
         x = self._corner[0] + (np.arange(low[0], high[0]) + 0.5) * self._cell - p[0]
         y = self._corner[1] + (np.arange(low[1], high[1]) + 0.5) * self._cell - p[1]
         heights = p[2] - (normal[0] * x[None, :] + normal[1] * y[:, None]) / normal[2]
-        return np.s_[low[1] : high[1], low[0] : high[0]], mask.astype(bool), heights
+        return _Footprint((slice(low[1], high[1]), slice(low[0], high[0])), mask.astype(bool), heights)
 
 
 def _seen_through(region: PlanarRegion, image: DepthImage, parameters: MemoryParameters) -> bool:

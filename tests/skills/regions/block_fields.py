@@ -62,7 +62,7 @@ def camera_pose(x: float, ground: float = 0.0, y=0.0, yaw=0.0, down=0.82, roll=0
 
 
 def look(boxes: list[Box], T_world_camera: Pose, camera: PinholeCamera = L515, time=0.0, frame_id=0) -> View:
-    """Noise-free depth of the boxes."""
+    """Noise-free depth of the boxes; those more than 4 m ahead are left out."""
     depth = np.full((camera.height, camera.width), np.inf)
     seen = np.full(depth.shape, -1)
     is_top = np.zeros(depth.shape, bool)
@@ -70,7 +70,7 @@ def look(boxes: list[Box], T_world_camera: Pose, camera: PinholeCamera = L515, t
         T_camera_box = T_world_camera.inverse @ box.T_world_box
         signs = np.array(np.meshgrid((-1, 1), (-1, 1), (-1, 1))).reshape(3, -1).T
         corners = T_camera_box @ (signs * box.half_extents)
-        if np.all(corners[:, 2] <= 0.05):
+        if np.all(corners[:, 2] <= 0.05) or np.all(corners[:, 2] > 4.0):
             continue
         low, high = np.zeros(2, int), np.array([camera.width, camera.height])
         if np.all(corners[:, 2] > 0.05):
@@ -110,12 +110,11 @@ def with_noise(image: DepthImage, seed: int, correlated=0.002) -> DepthImage:
     return DepthImage(noisy, image.camera, image.T_world_camera, image.time, image.frame_id)
 
 
-def frame(seed: int, camera: PinholeCamera = L515, correlated=0.002, **field) -> tuple[list[Box], View, DepthImage]:
-    """A rough field, a view of it from a random place along the way, and that view with noise."""
+def random_view(seed: int, camera: PinholeCamera = L515, **field) -> tuple[list[Box], View]:
+    """A rough field and a noise-free view of it from a random place along the way."""
     rng = np.random.default_rng(1000 + seed)
     boxes = rough_field(seed, **field)
     x, y = rng.uniform(-0.2, 5.0), rng.uniform(-0.1, 0.1)
     ground = max(box.top.p[2] for box in boxes if abs(box.top.p[0] - x) < 0.4 or box is boxes[0])
     yaw, roll, pitch = np.deg2rad(rng.uniform((-10.0, -3.0, 44.0), (10.0, 3.0, 50.0)))
-    view = look(boxes, camera_pose(x, ground, y, yaw, pitch, roll), camera, time=0.1 * seed, frame_id=seed)
-    return boxes, view, with_noise(view.image, seed, correlated)
+    return boxes, look(boxes, camera_pose(x, ground, y, yaw, pitch, roll), camera, time=0.1 * seed, frame_id=seed)

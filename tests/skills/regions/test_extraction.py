@@ -1,0 +1,235 @@
+import os
+from functools import cache
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from block_fields import L515, Box, View, block, camera_pose, look, random_view, with_noise
+from region_quality import Quality, judge
+
+from skills.geometry.camera import DepthImage, PinholeCamera
+from skills.geometry.polygon import contains_points, signed_area
+from skills.geometry.pose import Pose
+from skills.regions import Capsule, PlanarRegions, RegionParameters, debug_image, examine_regions, extract_regions
+
+HELD_OUT = (101, 102, 103)  # never used to choose a parameter
+SMALL = L515.scaled(0.3125)  # 320 x 240
+
+
+@cache
+def frame(seed: int) -> tuple[list[Box], View]:
+    return random_view(seed)
+
+
+def noisy(seed: int, correlated: float = 0.002) -> DepthImage:
+    return with_noise(frame(seed)[1].image, seed, correlated)
+
+
+@cache
+def quality(seed: int, correlated: float = 0.002) -> Quality:
+    return judge(*frame(seed), extract_regions(noisy(seed, correlated)))
+
+
+def pooled(name: str, correlated: float = 0.002) -> np.ndarray:
+    return np.concatenate([np.atleast_1d(getattr(quality(seed, correlated), name)) for seed in HELD_OUT])
+
+
+def ground(camera: PinholeCamera = L515, height=1.05, *boxes: Box) -> View:
+    return look([block(0.5, 0.0, 0.0, size=(4.0, 3.0, 0.1)), *boxes], camera_pose(0.0, height=height), camera)
+
+
+def region_at(regions: PlanarRegions, x: float, y: float) -> list[float]:
+    """Heights of the regions over a place."""
+    heights = []
+    for region in regions.regions:
+        T, n = region.T_world_region, region.normal_world
+        z = T.p[2] - (n[0] * (x - T.p[0]) + n[1] * (y - T.p[1])) / n[2]
+        point = (T.inverse @ np.array((x, y, z)))[None, :2].copy()
+        inside = contains_points(region.hull_region, point)[0]
+        if inside and not any(contains_points(hole, point)[0] for hole in region.holes_region):
+            heights.append(float(z))
+    return heights
+
+
+def test_touching_blocks_are_found_in_standard_noise():
+    assert pooled("recalled").mean() >= 0.95
+    assert np.median(pooled("iou")) >= 0.90
+    assert pooled("covered").mean() >= 0.96
+
+
+def test_touching_blocks_are_not_smeared_together():
+    assert pooled("wrong_height").mean() <= 0.01
+    assert pooled("wrong_slope").mean() <= 0.02
+
+
+def test_planes_are_accurate():
+    assert np.rad2deg(np.median(pooled("angle"))) <= 0.2
+    assert np.rad2deg(np.percentile(pooled("angle"), 90)) <= 1.0
+    assert np.percentile(pooled("offset"), 90) <= 0.001
+
+
+def test_strong_correlated_noise_costs_little():
+    assert pooled("recalled", 0.004).mean() >= 0.9
+    assert pooled("covered", 0.004).mean() >= 0.93
+    assert pooled("wrong_height", 0.004).mean() <= 0.01
+
+
+def test_a_block_tilted_by_11_degrees_parts_from_level_neighbours():
+    tilt = np.deg2rad(11.0)
+    boxes = [
+        block(0.6 + 0.37 * i, 0.39 * j, 0.0, pitch=tilt if i == j == 1 else 0.0) for i in range(3) for j in range(3)
+    ]
+    view = look(boxes, camera_pose(0.0, y=0.39))
+    regions = extract_regions(with_noise(view.image, 0)).regions
+    slopes = np.sort([np.rad2deg(np.arccos(region.normal_world[2])) for region in regions if region.area > 0.05])
+    assert slopes[-1] == pytest.approx(11.0, abs=0.3)
+    assert np.all(slopes[:-1] < 0.3)
+
+
+def test_without_noise_a_plane_is_exact():
+    view = ground()
+    (region,) = extract_regions(view.image).regions
+    assert np.arccos(min(region.normal_world[2], 1.0)) < 1e-5
+    assert abs(region.T_world_region.p[2]) < 1e-5
+
+
+def test_regions_are_well_formed():
+    for region in extract_regions(noisy(HELD_OUT[0])).regions:
+        R = region.T_world_region.R
+        np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-12)
+        assert R[2, 2] > 0.0
+        assert signed_area(region.hull_region) > 0.0
+        assert all(signed_area(hole) < 0.0 for hole in region.holes_region)
+        assert all(signed_area(part) > 0.0 for part in region.convex_parts_region)
+        parts = sum(signed_area(part) for part in region.convex_parts_region)
+        assert region.area <= parts + 1e-9
+
+
+def test_the_same_image_gives_the_same_bits():
+    image = noisy(HELD_OUT[0])
+    first, second = extract_regions(image), extract_regions(image)
+    assert len(first.regions) == len(second.regions)
+    for a, b in zip(first.regions, second.regions, strict=True):
+        assert a.hull_region.tobytes() == b.hull_region.tobytes()
+        assert a.T_world_region.p.tobytes() == b.T_world_region.p.tobytes()
+
+
+def test_a_pit_in_a_floor_is_a_hole_in_its_region():
+    slabs = [
+        block(0.6, 0.7, 0.0, size=(2.0, 1.0, 0.1)),
+        block(0.6, -0.7, 0.0, size=(2.0, 1.0, 0.1)),
+        block(0.4, 0.0, 0.0, size=(0.8, 0.4, 0.1)),
+        block(1.4, 0.0, 0.0, size=(0.6, 0.4, 0.1)),
+    ]
+    regions = extract_regions(with_noise(look(slabs, camera_pose(0.0)).image, 0))
+    assert max(len(region.holes_region) for region in regions.regions) == 1
+    assert region_at(regions, 0.95, 0.0) == []
+    assert len(region_at(regions, 0.95, 0.4)) == 1
+
+
+def test_lost_pixels_lose_no_region():
+    view = ground()
+    depth = view.image.depth.copy()
+    depth[np.random.default_rng(0).random(depth.shape) < 0.3] = 0.0
+    image = DepthImage(depth, view.image.camera, view.image.T_world_camera, 0.0, 0)
+    (region,) = extract_regions(image).regions
+    whole = extract_regions(view.image).regions[0]
+    assert region.area == pytest.approx(whole.area, rel=0.02)
+    assert np.arccos(min(region.normal_world[2], 1.0)) < 1e-4
+
+
+def test_a_small_camera_sees_the_same_blocks():
+    boxes, view = random_view(HELD_OUT[0], camera=SMALL)
+    regions = extract_regions(with_noise(view.image, 0))
+    figures = judge(boxes, view, regions, depth_max=2.0, pixels_min=600)
+    assert figures.recalled.mean() >= 0.8
+    assert figures.wrong_height <= 0.03
+
+
+def test_walls_are_rejected_with_their_slope():
+    view = ground(L515, 1.05, block(1.2, 0.0, 0.5, size=(0.2, 1.0, 0.6)))
+    extraction = examine_regions(with_noise(view.image, 0))
+    assert any("slope" in rejected.reason for rejected in extraction.rejected)
+    assert all(region.normal_world[2] > np.cos(np.deg2rad(40.0)) for region in extraction.regions.regions)
+
+
+def test_what_is_very_near_is_the_own_body():
+    view = ground(L515, 1.05, block(0.25, 0.0, 0.75, size=(0.3, 0.2, 0.1)))
+    extraction = examine_regions(with_noise(view.image, 0))
+    assert any("own body" in rejected.reason for rejected in extraction.rejected)
+    assert all(region.T_world_region.p[2] < 0.1 for region in extraction.regions.regions)
+
+
+def test_capsules_of_the_body_leave_no_ground():
+    foot = block(0.75, 0.0, 0.1, size=(0.26, 0.14, 0.1))
+    image = with_noise(ground(L515, 1.05, foot).image, 0)
+    body = (Capsule(np.array((0.62, 0.0, 0.05)), np.array((0.88, 0.0, 0.05)), 0.1),)
+    assert any(height > 0.05 for height in region_at(extract_regions(image), 0.75, 0.0))
+    assert not any(height > 0.05 for height in region_at(extract_regions(image, body=body), 0.75, 0.0))
+
+
+def test_a_barrel_is_no_ground():
+    view = ground()
+    camera, depth = view.image.camera, view.image.depth.copy()
+    _, u = np.indices(depth.shape)
+    x = (u - camera.cx) / camera.fx
+    # A cylinder of radius 0.12 m whose axis is parallel to the image's columns, 0.9 m ahead.
+    a, b = x**2 + 1.0, -2.0 * 0.9
+    root = b * b - 4.0 * a * (0.9**2 - 0.12**2)
+    near = np.where(root > 0.0, (-b - np.sqrt(np.maximum(root, 0.0))) / (2.0 * a), np.inf)
+    depth = np.minimum(depth, near).astype(np.float32)
+    image = with_noise(DepthImage(depth, camera, view.image.T_world_camera, 0.0, 0), 0)
+    for region in extract_regions(image).regions:
+        assert abs(region.T_world_region.p[2]) < 0.02 or region.area < 0.05
+
+
+@pytest.mark.parametrize("value", [0.0, np.nan, np.inf, 50.0])
+def test_an_image_without_depth_has_no_regions(value):
+    image = DepthImage(np.full((240, 320), value, np.float32), SMALL, Pose.identity(), 1.0, 7)
+    found = extract_regions(image)
+    assert (found.regions, found.time, found.frame_id) == ((), 1.0, 7)
+
+
+def test_debug_image_shows_regions_and_rejections_at_full_size():
+    view = ground(L515, 1.05, block(1.2, 0.0, 0.5, size=(0.2, 1.0, 0.6)))
+    extraction = examine_regions(with_noise(view.image, 0))
+    picture = debug_image(extraction)
+    assert picture.shape == (768, 1024, 3) and picture.dtype == np.uint8
+    saturation = picture.max(axis=2).astype(int) - picture.min(axis=2)
+    labels = np.kron(extraction.labels, np.ones((extraction.cell_size,) * 2, int))
+    accepted = np.isin(labels, extraction.region_labels)
+    assert np.mean(saturation[accepted & (view.image.depth > 0)] > 60) > 0.95
+    assert np.all(saturation[~accepted] == 0)
+
+
+def test_parameters_out_of_range_are_refused():
+    with pytest.raises(ValueError, match="area_min"):
+        RegionParameters(area_min=-1.0)
+
+
+@pytest.mark.parametrize(
+    ("name", "scale", "camera"),
+    [
+        ("tum_fr3_1341848230.910894_depth.png", 5000.0, PinholeCamera(640, 480, 535.4, 539.2, 320.1, 247.6)),
+        ("icl_nuim_0_depth.png", 5000.0, PinholeCamera(640, 480, 481.2, 480.0, 319.5, 239.5)),
+    ],
+)
+def test_real_images_give_planes_that_their_points_lie_in(name, scale, camera):
+    folder = os.environ.get("LOOKSTEP_DATA")
+    path = Path(folder or "") / "depth" / name
+    if not folder or not path.exists():
+        pytest.skip(f"no {name}: LOOKSTEP_DATA names no folder that holds depth/{name}")
+    depth = (cv2.imread(str(path), cv2.IMREAD_UNCHANGED) / scale).astype(np.float32)
+    # Gravity is unknown: towards the camera counts as up.
+    image = DepthImage(depth, camera, Pose(np.diag((1.0, -1.0, -1.0)), np.zeros(3)), 0.0, 0)
+    parameters = RegionParameters(slope_max=np.pi / 2)
+    extraction = examine_regions(image, parameters)
+    areas = [region.area for region in extraction.regions.regions]
+    assert len(areas) >= 3 and max(areas) > 0.2
+    for label, region in zip(extraction.region_labels, extraction.regions.regions, strict=True):
+        v, u = np.nonzero(np.kron(extraction.labels == label, np.ones((extraction.cell_size,) * 2)))
+        z = depth[v, u].astype(np.float64)
+        points = np.column_stack(((u - camera.cx) / camera.fx * z, (v - camera.cy) / camera.fy * z, z))[z > 0.0]
+        T_region_camera = region.T_world_region.inverse @ image.T_world_camera
+        assert np.median(np.abs((T_region_camera @ points)[:, 2])) < 0.01
