@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil
 
 import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports]
@@ -127,16 +128,10 @@ class KinematicWalker:
             self._output = self._make_output(self._output.stance)
 
     def advance(self, dt: float) -> WalkerOutput:
-        """Walk on for a control step [s]; after a fall time passes and nothing moves."""
-        left = dt
-        while left > _INSTANT and not self._failure:
-            left -= self._advance_within_phase(left)
-        self._time += left
-        soles = self._output.stance
-        if not self._failure:
-            soles = self._move_joints(self._gait.soles(), dt)
-        self._output = self._make_output(soles)
-        self._log.append(_sample(self._output))
+        """Walk on, in control steps no longer than the control period [s]; after a fall nothing moves."""
+        count = max(1, ceil(dt / self._parameters.control_period - _INSTANT))
+        for _ in range(count):
+            self._control(dt / count)
         return self._output
 
     def status(self) -> WalkingStatus:
@@ -185,6 +180,18 @@ class KinematicWalker:
     @property
     def _phase(self) -> WalkingPhase:
         return WalkingPhase.FALLEN if self._failure else self._gait.phase
+
+    def _control(self, dt: float) -> None:
+        """One control step [s]."""
+        left = dt
+        while left > _INSTANT and not self._failure:
+            left -= self._advance_within_phase(left)
+        self._time += left
+        soles = self._output.stance
+        if not self._failure:
+            soles = self._move_joints(self._gait.soles(), dt)
+        self._output = self._make_output(soles)
+        self._log.append(_sample(self._output))
 
     def _advance_within_phase(self, longest: float) -> float:
         """Let time pass to the end of the phase at most, and end it there; the time that passed [s]."""

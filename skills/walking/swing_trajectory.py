@@ -108,13 +108,14 @@ def _travel_window(way: Array, places: Array, parameters: WalkingParameters) -> 
 def _heights(knots: Array, dense: Array, way: Array, ramp: float, spacing: float) -> Array:
     """Control points of the height, (len(knots),), from the height of the way at dense shares of the swing."""
     apex = way.max()
-    distance = np.abs(knots[:, None] - dense)
-    highest = np.where(distance <= 2.0 * spacing + 1e-9, way, -np.inf).max(axis=1)
-    # Cones around every point of the way start the rise, and end the descent, early enough to be smooth.
-    slope = np.where(knots[:, None] < dense, apex - way[0], apex - way[-1]) / ramp
-    coned = (way - slope * np.maximum(0.0, distance - 2.0 * spacing)).max(axis=1)
-    limit_up = way[0] + (apex - way[0]) * np.clip((knots - spacing) / ramp, 0.0, 1.0)
-    limit_down = way[-1] + (apex - way[-1]) * np.clip((1.0 - spacing - knots) / ramp, 0.0, 1.0)
-    heights = np.maximum(highest, np.minimum(coned, np.minimum(limit_up, limit_down)))
+    near = np.abs(knots[:, None] - dense) <= 2.0 * spacing + 1e-9
+    highest = np.where(near, way, -np.inf).max(axis=1)
+    # A smooth rise that ends where the way first is at its apex, and a smooth descent from where it last is: slow near
+    # the ground, and almost always above the way.
+    top = knots[highest > apex - 1e-9]
+    rise, descent = np.clip((top[0] - spacing, 1.0 - spacing - top[-1]), 2.0 * spacing, ramp)
+    rising = way[0] + (apex - way[0]) * minimum_jerk((knots - spacing) / rise)
+    sinking = way[-1] + (apex - way[-1]) * minimum_jerk((1.0 - spacing - knots) / descent)
+    heights = np.maximum(highest, np.minimum(rising, sinking))
     heights[:3], heights[-3:] = way[0], way[-1]
     return heights

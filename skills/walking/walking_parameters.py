@@ -55,14 +55,14 @@ class WalkingParameters:
     swing_knots: int = parameter(32, unit="1", meaning="spline intervals of a swing", minimum=16, maximum=128)
     swing_leave: float = parameter(0.12, unit="1", meaning="share of the swing before the foot travels", minimum=0.1)
     swing_arrive: float = parameter(
-        0.9, unit="1", meaning="share of the swing when the foot has travelled", maximum=0.9
+        0.85, unit="1", meaning="share of the swing when the foot has travelled", maximum=0.9
     )
     swing_detour: float = parameter(0.15, unit="1", meaning="travel starts later, ends earlier at walls", maximum=0.25)
     swing_ramp: float = parameter(
-        0.25, unit="1", meaning="share of the swing to rise or sink in", minimum=0.05, maximum=0.5
+        0.45, unit="1", meaning="most of the swing to rise or sink in", minimum=0.1, maximum=0.5
     )
     swing_shoulder: float = parameter(
-        0.25, unit="1", meaning="share of the way to the apex without waypoints", maximum=0.5
+        0.35, unit="1", meaning="share of the way to the apex without waypoints", maximum=0.5
     )
     swing_normal: float = parameter(0.03, unit="m", meaning="way along the surface normal at both ends", minimum=0.001)
     swing_level: float = parameter(0.5, unit="1", meaning="share of the swing when the sole is level", minimum=0.1)
@@ -78,6 +78,8 @@ class WalkingParameters:
     elbow_pitch: float = parameter(radians(90.0), unit="rad", meaning="posture of both arms")
     elbow_roll: float = parameter(0.6, unit="rad", meaning="posture of the left arm, mirrored on the right")
 
+    control_period: float = parameter(0.01, unit="s", meaning="longest control step", minimum=0.0005, maximum=0.02)
+    control_period: float = parameter(0.01, unit="s", meaning="longest control step", minimum=0.0005, maximum=0.02)
     ik_iterations: int = parameter(5, unit="1", meaning="iterations of inverse kinematics a control step", minimum=1)
     ik_tolerance: float = parameter(1e-9, unit="m", meaning="error at which its iterations end", minimum=0.0)
     sole_residual: float = parameter(

@@ -1,0 +1,67 @@
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin  # pyright: ignore[reportMissingImports]
+import pytest
+
+from skills.footsteps.footstep import Side
+from skills.geometry.pose import Array
+from skills.walking import RobotModel
+
+MJCF = Path(__file__).parents[3] / "sim_envs" / "robot" / "atlas_class.xml"
+
+
+def random_configuration(model: RobotModel, seed: int) -> Array:
+    rng = np.random.default_rng(seed)
+    q = model.neutral_configuration()
+    q[:3] = rng.uniform(-1.0, 1.0, 3)
+    q[3:7] = rng.normal(size=4)
+    q[3:7] /= np.linalg.norm(q[3:7])
+    q[7:] = rng.uniform(model.lower_limits, model.upper_limits)
+    return q
+
+
+def test_it_reads_the_robot(model: RobotModel) -> None:
+    assert len(model.joint_names) == 23
+    assert model.mass == pytest.approx(174.0, abs=1.5)
+    assert np.all(model.lower_limits < model.upper_limits)
+    for side in Side:
+        names = [model.joint_names[joint] for joint in model.legs[side].joints]
+        assert names == [
+            f"{side.value}_{joint}"
+            for joint in ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch", "ankle_roll")
+        ]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_jacobians_are_the_derivatives(model: RobotModel, seed: int) -> None:
+    q, h = random_configuration(model, seed), 1e-6
+    for side in Side:
+        jacobian, com_jacobian = model.sole_jacobian(q, side), model.com_jacobian(q)
+        for k, direction in enumerate(np.eye(model.pin_model.nv)):
+            ahead, behind = (pin.integrate(model.pin_model, q, s * h * direction) for s in (1.0, -1.0))
+            a, b = model.sole_pose(ahead, side), model.sole_pose(behind, side)
+            np.testing.assert_allclose((a.p - b.p) / (2 * h), jacobian[:3, k], atol=1e-7)
+            np.testing.assert_allclose(pin.log3(a.R @ b.R.T) / (2 * h), jacobian[3:, k], atol=1e-7)
+            np.testing.assert_allclose((model.com(ahead) - model.com(behind)) / (2 * h), com_jacobian[:, k], atol=1e-7)
+
+
+@pytest.mark.parametrize("knee", (0.0, 0.5, 1.5, 2.3))
+def test_a_leg_is_as_long_as_its_knee_says(model: RobotModel, knee: float) -> None:
+    for side in Side:
+        leg = model.legs[side]
+        q = random_configuration(model, 5)
+        q[7 + leg.joints[3]] = knee
+        hip = model.frame_pose(q, f"{side.value}_thigh").p
+        ankle = model.sole_pose(q, side) @ leg.p_sole_ankle
+        assert np.linalg.norm(hip - ankle) == pytest.approx(leg.length(knee), abs=1e-9)
+
+
+def test_missing_files_and_frames_are_named(model: RobotModel, tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"nowhere\.xml: there is no such MJCF file"):
+        RobotModel(tmp_path / "nowhere.xml")
+    with pytest.raises(ValueError, match="no frame 'tail'"):
+        model.frame_pose(model.neutral_configuration(), "tail")
+    (tmp_path / "paws.xml").write_text(MJCF.read_text().replace("left_sole", "left_paw"))
+    with pytest.raises(ValueError, match="there is no site 'left_sole'"):
+        RobotModel(tmp_path / "paws.xml")
