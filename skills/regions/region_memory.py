@@ -11,20 +11,17 @@ from __future__ import annotations
 from collections import Counter
 from typing import NamedTuple
 
-import cv2
 import numpy as np
-from numpy.typing import NDArray
 
 from skills.footsteps.footstep import Side, Stance
 from skills.geometry.camera import DepthImage
 from skills.geometry.polygon import contains_points
-from skills.geometry.pose import Array, Pose
+from skills.geometry.pose import Pose
+from skills.regions.height_grid import Cells, Comparison, HeightGrid, cells_of
 from skills.regions.parameters import MemoryParameters
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 
 EXPIRED, FAR, COVERED, CHANGED, VANISHED, TOO_MANY = "expired", "far", "covered", "changed", "vanished", "too many"
-
-_PROBES = 32  # points at which an old region is compared with the newest depth image
 
 
 class RegionMemory:
@@ -32,7 +29,7 @@ class RegionMemory:
 
     def __init__(self, parameters: MemoryParameters | None = None) -> None:
         self.parameters = parameters or MemoryParameters()
-        self._kept: tuple[PlanarRegion, ...] = ()
+        self._kept: tuple[_Remembered, ...] = ()
         self._T_world_key: Pose | None = None
         self._dropped: tuple[tuple[str, int], ...] = ()
 
@@ -55,52 +52,58 @@ class RegionMemory:
         """
         reasons: Counter[str] = Counter()
         is_key = self._is_key(image.T_world_camera)
-        kept = self._remember(regions, stance, image, is_key, reasons)
-        known = (*kept, *regions.regions)
+        newest = tuple(_Remembered(region, cells_of(region, self.parameters.cell)) for region in regions.regions)
+        kept = self._remember(newest, regions.time, stance, image, is_key, reasons)
+        known = tuple(remembered.region for remembered in (*kept, *newest))
         unseen = [side for side in Side if not self._stands_on(stance.sole(side), known)]
         supports = tuple(self._support(stance.sole(side), regions.time) for side in unseen)
         self._kept = kept
         if is_key:
-            self._T_world_key, self._kept = image.T_world_camera, known
+            self._T_world_key, self._kept = image.T_world_camera, (*kept, *newest)
         self._dropped = tuple(sorted(reasons.items()))
         return PlanarRegions((*supports, *known), regions.time, regions.frame_id)
 
     def _remember(
-        self, newest: PlanarRegions, stance: Stance, image: DepthImage, is_key: bool, reasons: Counter[str]
-    ) -> tuple[PlanarRegion, ...]:
+        self,
+        newest: tuple[_Remembered, ...],
+        now: float,
+        stance: Stance,
+        image: DepthImage,
+        is_key: bool,
+        reasons: Counter[str],
+    ) -> tuple[_Remembered, ...]:
         """The old regions that still hold; counts why the others do not."""
-        grid = _HeightGrid(stance.mid_feet, self.parameters)
-        for region in newest.regions:
-            grid.paint(grid.footprint(region))
+        grid = HeightGrid(stance.mid_feet, self.parameters.radius, self.parameters.cell)
+        for remembered in newest:
+            grid.paint(remembered.cells)
         grid.freeze()
-        kept: list[PlanarRegion] = []
-        for region in reversed(self._kept):
-            footprint = grid.footprint(region)
-            reason = self._reason_to_forget(region, newest.time, grid.compare(footprint), image)
-            # A frame that will not be kept replaces nothing: the next one may see less.
-            if reason == COVERED and not is_key:
-                reason = ""
-            if not reason and len(kept) + len(newest.regions) >= self.parameters.regions_max:
+        vanished = _seen_through([remembered.cells for remembered in self._kept], image, self.parameters.same_height)
+        kept: list[_Remembered] = []
+        for remembered, gone in zip(reversed(self._kept), reversed(vanished), strict=True):
+            comparison = grid.compare(remembered.cells, self.parameters.same_height)
+            reason = self._reason_to_forget(now - remembered.region.time, comparison, is_key, gone)
+            if not reason and len(kept) + len(newest) >= self.parameters.regions_max:
                 reason = TOO_MANY
             if reason:
                 reasons[reason] += 1
             else:
-                kept.append(region)
-                grid.paint(footprint)
+                kept.append(remembered)
+                grid.paint(remembered.cells)
         return tuple(reversed(kept))
 
-    def _reason_to_forget(self, region: PlanarRegion, now: float, cells: _Comparison, image: DepthImage) -> str:
+    def _reason_to_forget(self, age: float, cells: Comparison, is_key: bool, gone: bool) -> str:
         parameters = self.parameters
-        if now - region.time > parameters.age_max:
+        if age > parameters.age_max:
             return EXPIRED
         if cells.inside == 0:
             return FAR
         if cells.seen >= parameters.changed_share * cells.inside and cells.differing > 0.5 * cells.seen:
             return CHANGED
-        if cells.covered >= parameters.covered_share * cells.inside:
-            return COVERED
-        if _seen_through(region, image, parameters):
+        if gone:
             return VANISHED
+        # A frame that will not be kept replaces nothing: the next one may see less.
+        if is_key and cells.covered >= parameters.covered_share * cells.inside:
+            return COVERED
         return ""
 
     def _is_key(self, T_world_camera: Pose) -> bool:
@@ -134,93 +137,27 @@ class RegionMemory:
         return PlanarRegion(T_world_sole, pad, (pad,), float(4.0 * half[0] * half[1]), time)
 
 
-class _Footprint(NamedTuple):
-    """A window of the grid around a region, the region's cells in it, and its height in each."""
+class _Remembered(NamedTuple):
+    """A region and its cells, which are found once."""
 
-    window: tuple[slice, slice]
-    mask: NDArray[np.bool_]
-    heights: Array
-
-
-class _Comparison(NamedTuple):
-    """Cells of a region: all, covered by newer regions, seen by the newest frame, and seen there at another height."""
-
-    inside: int
-    covered: int
-    seen: int
-    differing: int
+    region: PlanarRegion
+    cells: Cells
 
 
-class _HeightGrid:
-    """Heights of regions on a horizontal grid around the feet."""
-
-    def __init__(self, middle: Array, parameters: MemoryParameters) -> None:
-        self._cell = parameters.cell
-        self._same_height = parameters.same_height
-        size = int(np.ceil(2.0 * parameters.radius / parameters.cell))
-        # Anchored to multiples of the cell, so that standing still changes nothing.
-        self._corner = np.floor(middle[:2] / parameters.cell) * parameters.cell - parameters.radius
-        self._height = np.full((size, size), np.nan)
-        self._newest = self._height
-
-    def freeze(self) -> None:
-        """Take what was painted so far as the newest frame."""
-        self._newest = self._height.copy()
-
-    def paint(self, footprint: _Footprint) -> None:
-        """Fill in a region where nothing newer is."""
-        patch = self._height[footprint.window]
-        empty = footprint.mask & np.isnan(patch)
-        patch[empty] = footprint.heights[empty]
-
-    def compare(self, footprint: _Footprint) -> _Comparison:
-        """Hold a region against what is newer; cells next to a covered one count as covered, outlines being noisy."""
-        window, mask, heights = footprint
-        known = ~np.isnan(self._height[window])
-        covered = (
-            mask & cv2.dilate(known.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool) if mask.size else mask
-        )
-        newest = self._newest[window]
-        seen = mask & ~np.isnan(newest)
-        differing = seen & (np.abs(newest - heights) > self._same_height)
-        return _Comparison(*(int(np.count_nonzero(cells)) for cells in (mask, covered, seen, differing)))
-
-    def footprint(self, region: PlanarRegion) -> _Footprint:
-        """The region's cells, without those outside the grid."""
-        n = len(self._height)
-        rings = [(region.T_world_region.R[:2, :2] @ ring.T).T for ring in (region.hull_region, *region.holes_region)]
-        offset = (region.T_world_region.p[:2] - self._corner) / self._cell - 0.5
-        rings = [ring / self._cell + offset for ring in rings]
-        low = np.clip(np.floor(rings[0].min(axis=0)).astype(int), 0, n)
-        high = np.clip(np.ceil(rings[0].max(axis=0)).astype(int) + 1, low, n)
-        mask = np.zeros((high[1] - low[1], high[0] - low[0]), np.uint8)
-        if mask.size:
-            cv2.fillPoly(
-                mask, [np.round((ring - low) * 16).astype(np.int32).reshape(-1, 1, 2) for ring in rings], (1,), 8, 4
-            )
-        p, normal = region.T_world_region.p, region.normal_world
-        x = self._corner[0] + (np.arange(low[0], high[0]) + 0.5) * self._cell - p[0]
-        y = self._corner[1] + (np.arange(low[1], high[1]) + 0.5) * self._cell - p[1]
-        heights = p[2] - (normal[0] * x[None, :] + normal[1] * y[:, None]) / normal[2]
-        return _Footprint((slice(low[1], high[1]), slice(low[0], high[0])), mask.astype(bool), heights)
-
-
-def _seen_through(region: PlanarRegion, image: DepthImage, parameters: MemoryParameters) -> bool:
-    """Whether the newest image shows something clearly behind most of an old region that is in view."""
+def _seen_through(old: list[Cells], image: DepthImage, same_height: float) -> list[bool]:
+    """For each old region, whether the newest image shows something clearly behind most of it."""
+    if not old:
+        return []
     camera = image.camera
-    corners = np.concatenate(region.convex_parts_region)
-    middles = np.array([part.mean(axis=0) for part in region.convex_parts_region])
-    spread = np.concatenate(
-        (middles, 0.5 * (corners + np.repeat(middles, [len(p) for p in region.convex_parts_region], 0)))
-    )
-    spread = spread[:: len(spread) // _PROBES + 1]
-    points = image.T_world_camera.inverse @ (region.T_world_region @ np.column_stack((spread, np.zeros(len(spread)))))
-    points = points[points[:, 2] > camera.near]
-    u = np.round(points[:, 0] / points[:, 2] * camera.fx + camera.cx).astype(int)
-    v = np.round(points[:, 1] / points[:, 2] * camera.fy + camera.cy).astype(int)
-    in_view = (u >= 0) & (u < camera.width) & (v >= 0) & (v < camera.height)
-    measured = image.depth[v[in_view], u[in_view]]
-    expected = points[in_view, 2]
-    valid = measured > 0.0
-    behind = valid & (measured > expected + 2.0 * parameters.same_height)
-    return bool(np.count_nonzero(behind) > max(0.5 * np.count_nonzero(valid), 0.25 * len(spread)))
+    counts = np.array([len(cells.probes_world) for cells in old])
+    points = image.T_world_camera.inverse @ np.concatenate([cells.probes_world for cells in old])
+    ahead = np.maximum(points[:, 2], camera.near)
+    u = np.round(points[:, 0] / ahead * camera.fx + camera.cx).astype(int)
+    v = np.round(points[:, 1] / ahead * camera.fy + camera.cy).astype(int)
+    in_view = (points[:, 2] > camera.near) & (u >= 0) & (u < camera.width) & (v >= 0) & (v < camera.height)
+    measured = np.where(in_view, image.depth[np.where(in_view, v, 0), np.where(in_view, u, 0)], 0.0)
+    # Where the old surface is seen at a slant, its error in height shows as a larger one in depth.
+    behind = measured > points[:, 2] + 2.0 * same_height
+    starts = np.concatenate(([0], np.cumsum(counts)[:-1]))
+    seen, gone = (np.add.reduceat(flags.astype(int), starts) for flags in (measured > 0.0, behind))
+    return (gone > np.maximum(0.5 * seen, 0.25 * counts)).tolist()
