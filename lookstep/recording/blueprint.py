@@ -12,12 +12,12 @@ def default_blueprint(start: tuple[float, float], goal: tuple[float, float]) -> 
     scene = rrb.Spatial3DView(
         name="Walk",
         origin="/world",
-        background=rrb.Background(kind=rrb.components.BackgroundKind.GradientDark),
+        background=rrb.Background(color=(208, 216, 226, 255)),
         line_grid=rrb.LineGrid3D(visible=False),
         eye_controls=rrb.EyeControls3D(
             kind=rrb.components.Eye3DKind.Orbital,
-            position=(start[0] - 2.2, start[1] - 3.0, 2.6),
-            look_target=(start[0] + 0.9, start[1], 0.5),
+            position=(start[0] - 0.8, start[1] - 2.0, 1.7),
+            look_target=(start[0] + 0.3, start[1], 0.8),
             tracking_entity="/world/robot/pelvis",
         ),
     )

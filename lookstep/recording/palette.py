@@ -4,8 +4,11 @@ RGBA = tuple[int, int, int, int]
 
 LEFT: RGBA = (230, 85, 60, 255)
 RIGHT: RGBA = (50, 120, 220, 255)
-LEFT_TENTATIVE: RGBA = (230, 85, 60, 110)
-RIGHT_TENTATIVE: RGBA = (50, 120, 220, 110)
+LEFT_TENTATIVE: RGBA = (244, 170, 155, 255)
+RIGHT_TENTATIVE: RGBA = (150, 190, 240, 255)
+LEFT_TAKEN: RGBA = (130, 60, 48, 255)
+RIGHT_TAKEN: RGBA = (40, 72, 120, 255)
+REGION_EDGE: RGBA = (40, 44, 52, 255)
 BODY_PATH: RGBA = (250, 200, 60, 255)
 SUB_GOAL: RGBA = (250, 140, 30, 255)
 GOAL: RGBA = (60, 190, 90, 255)
@@ -19,7 +22,7 @@ MEASURED: RGBA = (90, 170, 250, 255)
 STATUS_COLORS = {
     "running": (240, 180, 50, 255),
     "success": (70, 170, 90, 255),
-    "failure": (200, 75, 65, 255),
+    "failure": (150, 88, 84, 255),
     "idle": (70, 74, 82, 255),
 }
 
@@ -40,7 +43,10 @@ REGION_COLORS: tuple[tuple[int, int, int], ...] = (
 )
 
 
+_CELL = 0.15  # regions whose centres lie this near share a colour [m]
+
+
 def region_color(center_xy: tuple[float, float]) -> tuple[int, int, int]:
     """A colour that a region keeps from frame to frame, because it follows from where the region lies."""
-    cell = (round(center_xy[0] / 0.15), round(center_xy[1] / 0.15))
+    cell = (round(center_xy[0] / _CELL), round(center_xy[1] / _CELL))
     return REGION_COLORS[(cell[0] * 7 + cell[1] * 3) % len(REGION_COLORS)]

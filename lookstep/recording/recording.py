@@ -39,6 +39,7 @@ _STATES = {
     Status.FAILURE: "failure",
     Status.INVALID: "idle",
 }
+_ENDED = (Status.SUCCESS, Status.FAILURE)
 _LEVELS = {"info": "INFO", "warning": "WARN", "error": "ERROR"}
 
 
@@ -65,6 +66,7 @@ class Recording:
         self._columns = Columns(self._stream)
         self._taken: list[tuple[Side, Pose]] = []
         self._seen: dict[str, Any] = {}
+        self._reasons: dict[str, str] = {}
         self._box_poses: dict[str, Any] = {}
         self._next_links = self._next_image = self._next_flush = 0.0
         self._log_static(about)
@@ -144,7 +146,7 @@ class Recording:
             case RegionExtraction():
                 self._log_images(value, moment)
             case FootstepPlan():
-                log(f"world/{key}/steps", scene.footprints(value.steps, self._sole))
+                log(f"world/{key}/steps", scene.planned_soles(value.steps, self._sole))
                 log(f"world/{key}/swings", scene.swing_ways(value.steps, moment.status.imminent_stance))
             case BodyPath():
                 log(f"world/{key}", scene.path_line(value, height + 0.02))
@@ -174,24 +176,27 @@ class Recording:
 
     def _log_tree(self, moment: Moment) -> None:
         for transition in moment.tree.transitions:
-            lane = self._lanes[transition.path]
-            self._columns.state(lane, moment.time, _STATES[transition.after])
-            if transition.reason and transition.after is Status.FAILURE:
-                self._stream.log("log", rr.TextLog(f"{transition.path}: {transition.reason}", level="WARN"))
+            self._columns.state(self._lanes[transition.path], moment.time, _STATES[transition.after])
+        for node in moment.tree.nodes:
+            if not node.children and node.status in _ENDED and node.reason != self._reasons.get(node.path, ""):
+                self._reasons[node.path] = node.reason
+                self._log_line(node.name, node.reason, "INFO")
         for line in moment.log:
-            self._stream.log("log", rr.TextLog(f"{line.path}: {line.text}", level=_LEVELS[line.level]))
+            self._log_line(line.path.rpartition("/")[2], line.text, _LEVELS[line.level])
+
+    def _log_line(self, source: str, text: str, level: str) -> None:
+        if text:
+            self._stream.log("log", rr.TextLog(f"{source}: {text}", level=level))
 
     def _log_lanes(self, nodes: Sequence[Node]) -> dict[str, str]:
         """One lane a node, in the order of the tree: rerun sorts lanes by their entity paths."""
         states = list(palette.STATUS_COLORS)
-        lanes = {}
+        colors = np.array(list(palette.STATUS_COLORS.values()), dtype=np.uint8)
+        lanes: dict[str, str] = {}
         for index, node in enumerate(nodes):
-            depth = node.path.count("/") - 1
-            lanes[node.path] = f"tree/{index:02d} {'· ' * depth}{node.name}"
-            configuration = rr.StateConfiguration(
-                values=states, labels=states, colors=np.array([list(c) for c in palette.STATUS_COLORS.values()])
-            )
-            self._stream.log(lanes[node.path], configuration, static=True)
+            lanes[node.path] = f"tree/{index:02d}_{node.name}"
+            lane = rr.StateConfiguration(values=states, labels=states, colors=colors)
+            self._stream.log(lanes[node.path], lane, static=True)
         return lanes
 
     def _log_timing(self, moment: Moment) -> None:
@@ -205,4 +210,4 @@ class Recording:
         for event in moment.events:
             if event.kind is StepEventKind.COMPLETED:
                 self._taken.append((event.step.side, event.T_world_sole))
-                self._stream.log("world/steps_taken", scene.taken_footprints(self._taken, self._sole))
+                self._stream.log("world/steps_taken", scene.taken_soles(self._taken, self._sole))

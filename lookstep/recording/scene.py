@@ -15,14 +15,15 @@ from sim_envs.courses import Course
 from sim_envs.sensors import GeomMesh, geom_mesh, geom_rgba
 from skills.body_path import BodyPath, Goal
 from skills.footsteps import Footstep, Side, Stance
-from skills.geometry.pose import Array, Pose
+from skills.geometry import Array, Pose, convex_hull
 from skills.regions import PlanarRegion, PlanarRegions
 
 BoxPose = tuple[tuple[float, ...], tuple[float, ...]]
 
-# Lines and footprints float above the surface they lie on, or the surface swallows them.
-_LIFT = 0.006
-_ROUND_SEGMENTS = 16
+# Regions float above the blocks and footprints above the regions, or they would flicker through each other.
+_REGION_LIFT = 0.005
+_STEP_LIFT = 0.012
+_ROUND_SEGMENTS = 24
 
 
 def robot_meshes(model: mujoco.MjModel) -> Iterator[tuple[int, rr.Mesh3D]]:
@@ -60,18 +61,18 @@ def _merged(model: mujoco.MjModel, mesh: GeomMesh, members: np.ndarray) -> rr.Me
 
 def region_outlines(regions: PlanarRegions) -> rr.LineStrips3D:
     """Outline of every region in its colour."""
-    strips = [_closed(_lifted(region.T_world_region, region.hull_region)) for region in regions.regions]
-    return rr.LineStrips3D(strips, colors=[_color(region, 255) for region in regions.regions], radii=0.006)
+    strips = [_closed(_lifted(region.T_world_region, region.hull_region, _REGION_LIFT)) for region in regions.regions]
+    return rr.LineStrips3D(strips, colors=[palette.REGION_EDGE] * len(strips), radii=0.004)
 
 
 def region_surfaces(regions: PlanarRegions) -> rr.Mesh3D | rr.Clear:
-    """The convex parts of every region as one translucent mesh."""
+    """The convex parts of every region as one mesh."""
     corners, colors = [np.zeros((0, 3))], []
     for region in regions.regions:
         for part in region.convex_parts_region:
-            fan = _fan(_lifted(region.T_world_region, part))
+            fan = _fan(_lifted(region.T_world_region, part, _REGION_LIFT))
             corners.append(fan)
-            colors.extend([_color(region, 130)] * len(fan))
+            colors.extend([_color(region, 255)] * len(fan))
     if not colors:
         return rr.Clear(recursive=False)
     return rr.Mesh3D(
@@ -84,21 +85,27 @@ def _color(region: PlanarRegion, alpha: int) -> palette.RGBA:
     return (*palette.region_color((float(center[0]), float(center[1]))), alpha)
 
 
-def footprints(steps: Sequence[Footstep], sole: Array) -> rr.LineStrips3D:
-    """Soles of steps as outlines with a heading tick; steps after the first are fainter, because they may change."""
-    strips, colors = [], []
+def planned_soles(steps: Sequence[Footstep], sole: Array) -> rr.Mesh3D:
+    """Soles of a plan; those after the first are paler, because they may still change."""
+    colors = []
     for i, step in enumerate(steps):
         left = step.side is Side.LEFT
-        firm, faint = (palette.LEFT, palette.LEFT_TENTATIVE) if left else (palette.RIGHT, palette.RIGHT_TENTATIVE)
-        strips += [_closed(_lifted(step.T_world_sole, sole)), _heading_tick(step.T_world_sole, sole)]
-        colors += [firm if i == 0 else faint] * 2
-    return rr.LineStrips3D(strips, colors=colors, radii=0.008)
+        firm, pale = (palette.LEFT, palette.LEFT_TENTATIVE) if left else (palette.RIGHT, palette.RIGHT_TENTATIVE)
+        colors.append(firm if i == 0 else pale)
+    return _soles([step.T_world_sole for step in steps], sole, colors)
 
 
-def taken_footprints(steps: Sequence[tuple[Side, Pose]], sole: Array) -> rr.Mesh3D:
-    """Filled soles where feet have landed."""
-    fans = [_fan(_lifted(T_world_sole, sole)) for _, T_world_sole in steps]
-    colors = [palette.LEFT_TENTATIVE if side is Side.LEFT else palette.RIGHT_TENTATIVE for side, _ in steps]
+def taken_soles(steps: Sequence[tuple[Side, Pose]], sole: Array) -> rr.Mesh3D:
+    """Soles where feet have landed."""
+    colors = [palette.LEFT_TAKEN if side is Side.LEFT else palette.RIGHT_TAKEN for side, _ in steps]
+    return _soles([T_world_sole for _, T_world_sole in steps], sole, colors)
+
+
+def _soles(poses: Sequence[Pose], sole: Array, colors: Sequence[palette.RGBA]) -> rr.Mesh3D:
+    """Filled soles whose toes are pointed, so that the heading shows."""
+    toe = float(sole[:, 0].max())
+    pointed = convex_hull(np.vstack((0.98 * sole, (1.12 * toe, 0.0))))
+    fans = [_fan(_lifted(T_world_sole, pointed, _STEP_LIFT)) for T_world_sole in poses]
     return rr.Mesh3D(
         vertex_positions=np.concatenate(fans).astype(np.float32),
         vertex_colors=np.repeat(np.array(colors, dtype=np.uint8), [len(fan) for fan in fans], axis=0),
@@ -113,7 +120,7 @@ def swing_ways(steps: Sequence[Footstep], stance: Stance) -> rr.LineStrips3D:
         strips.append(np.vstack((start.p, step.swing_waypoints_world, step.T_world_sole.p)))
         stance = stance.with_sole(step.side, step.T_world_sole)
     colors = [palette.LEFT if step.side is Side.LEFT else palette.RIGHT for step in steps]
-    return rr.LineStrips3D(strips, colors=colors, radii=0.003)
+    return rr.LineStrips3D(strips, colors=colors, radii=0.005)
 
 
 def path_line(path: BodyPath, height: float) -> rr.LineStrips3D:
@@ -122,18 +129,13 @@ def path_line(path: BodyPath, height: float) -> rr.LineStrips3D:
     return rr.LineStrips3D([np.column_stack((xy, np.full(len(xy), height)))], colors=[palette.BODY_PATH], radii=0.01)
 
 
-def _lifted(T_world_plane: Pose, polygon: Array) -> Array:
+def _lifted(T_world_plane: Pose, polygon: Array, lift: float) -> Array:
     """A polygon of the plane's xy in the world, a little above the plane, (N, 3) [m]."""
-    return T_world_plane @ np.column_stack((polygon, np.full(len(polygon), _LIFT)))
+    return T_world_plane @ np.column_stack((polygon, np.full(len(polygon), lift)))
 
 
 def _closed(points: Array) -> Array:
     return np.vstack((points, points[:1]))
-
-
-def _heading_tick(T_world_sole: Pose, sole: Array) -> Array:
-    toe = float(sole[:, 0].max())
-    return T_world_sole @ np.array([[0.3 * toe, 0.0, _LIFT], [toe, 0.0, _LIFT]])
 
 
 def _fan(polygon_world: Array) -> Array:
