@@ -73,7 +73,7 @@ def _grow(
     """Label patches region by region; the number of regions."""
     rows, columns = labels.shape
     queue = np.empty(rows * columns, np.int64)
-    seen = np.full((rows, columns), -1, np.int32)
+    seen = np.zeros((rows, columns), np.int32)  # the last seed, counted from 1, that reached a patch
     count = 0
     for seed in range(order.shape[0]):
         row, column = order[seed] // columns, order[seed] % columns
@@ -82,10 +82,11 @@ def _grow(
         region, plane = sums[count], planes[count]
         for k in range(3):
             plane[k] = patch_planes[row, column, k]
-        region[:] = 0.0
+        for k in range(10):
+            region[k] = 0.0
         head, tail, fitted = 0, 1, 6
         queue[0] = order[seed]
-        seen[row, column] = seed
+        seen[row, column] = seed + 1
         while head < tail:
             row, column = queue[head] // columns, queue[head] % columns
             head += 1
@@ -98,7 +99,7 @@ def _grow(
             for side in range(4):
                 i = row + (side == 0) - (side == 1)
                 j = column + (side == 2) - (side == 3)
-                if i < 0 or j < 0 or i >= rows or j >= columns or labels[i, j] >= 0 or seen[i, j] == seed:
+                if i < 0 or j < 0 or i >= rows or j >= columns or labels[i, j] >= 0 or seen[i, j] == seed + 1:
                     continue
                 there = patch_planes[i, j]
                 s = patch_sums[i, j]
@@ -110,7 +111,7 @@ def _grow(
                     and abs(off_plane(s, here)) <= link_offset
                     and abs(off_plane(patch_sums[row, column], there)) <= link_offset
                 ):
-                    seen[i, j] = seed
+                    seen[i, j] = seed + 1
                     queue[tail] = i * columns + j
                     tail += 1
         if tail < patches_min:
@@ -118,7 +119,8 @@ def _grow(
         # Early members were judged by a plane that was still poor: judge them again by the last one.
         fit_plane(region, plane)
         kept = 0
-        region[:] = 0.0
+        for k in range(10):
+            region[k] = 0.0
         for k in range(tail):
             row, column = queue[k] // columns, queue[k] % columns
             if abs(off_plane(patch_sums[row, column], plane)) <= grow_offset:
@@ -168,39 +170,43 @@ def _merge(
 ) -> NDArray[np.int32]:
     """Join regions at most two patches apart until none fits another; which region each one has become."""
     rows, columns = labels.shape
-    parents = np.arange(count).astype(np.int32)
-    touching = np.zeros((count, count), np.bool_)
+    parents = np.empty(count, np.int32)
+    touching = np.zeros((count, count), np.uint8)
+    for p in range(count):
+        parents[p] = p
     for row in range(rows):
         for column in range(columns):
             p = labels[row, column]
-            if p < 0:
-                continue
             for step in range(1, 4):
-                if row + step < rows and labels[row + step, column] >= 0:
-                    touching[p, labels[row + step, column]] = True
-                if column + step < columns and labels[row, column + step] >= 0:
-                    touching[p, labels[row, column + step]] = True
+                q = labels[row + step, column] if row + step < rows else -1
+                r = labels[row, column + step] if column + step < columns else -1
+                if p >= 0 and q >= 0:
+                    touching[min(p, q), max(p, q)] = 1
+                if p >= 0 and r >= 0:
+                    touching[min(p, r), max(p, r)] = 1
     union, plane = np.empty(10), np.empty(3)
     merged = True
     while merged:
         merged = False
         for p in range(count):
             for q in range(p + 1, count):
-                if parents[p] != p or parents[q] != q or not (touching[p, q] or touching[q, p]):
+                if touching[p, q] == 0 or parents[p] != p or parents[q] != q:
                     continue
                 for k in range(10):
                     union[k] = sums[p, k] + sums[q, k]
                 fit_plane(union, plane)
                 # The plane of a small region is less certain, and more of its misfit is noise.
                 limit = merge_offset * (1.0 + smallest / min(sums[p, 0], sums[q, 0]))
-                if max(misfit(sums[p], planes[p], plane), misfit(sums[q], planes[q], plane)) > limit:
+                if misfit(sums[p], planes[p], plane) > limit or misfit(sums[q], planes[q], plane) > limit:
                     continue
-                sums[p] = union
-                planes[p] = plane
+                for k in range(10):
+                    sums[p, k] = union[k]
+                for k in range(3):
+                    planes[p, k] = plane[k]
                 for k in range(count):
                     if parents[k] == q:
                         parents[k] = p
-                    touching[p, k] |= touching[q, k]
-                    touching[k, p] |= touching[k, q]
+                    if k != p and touching[min(k, q), max(k, q)]:
+                        touching[min(k, p), max(k, p)] = 1
                 merged = True
     return parents

@@ -81,7 +81,8 @@ def _sum_patches(depth: NDArray[np.float32], lens: Array, near: float, far: floa
     n, i1, i2 = np.empty(width), np.empty(width), np.empty(width)
     w1, iw, ww = np.empty(width), np.empty(width), np.empty(width)
     for row in range(rows):
-        n[:], i1[:], i2[:], w1[:], iw[:], ww[:] = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for u in range(width):
+            n[u], i1[u], i2[u], w1[u], iw[u], ww[u] = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         for i in range(size):
             line = depth[row * size + i]
             for u in range(width):
@@ -132,7 +133,8 @@ def _drop_body(sums: Array, capsules: Array) -> None:
                 along = ux * px + uy * py + uz * pz
                 t = min(max(along / max(ux * ux + uy * uy + uz * uz, 1e-12), 0.0), 1.0)
                 if (px - t * ux) ** 2 + (py - t * uy) ** 2 + (pz - t * uz) ** 2 < c[6] * c[6]:
-                    s[:] = 0.0
+                    for m in range(10):
+                        s[m] = 0.0
                     break
 
 
@@ -162,11 +164,12 @@ def _fit_windows(sums: Array, sigma_max: float, offset: float, planes: Array, si
     rows, columns = sums.shape[0], sums.shape[1]
     window = np.empty(10)
     fit = np.empty((rows, columns, 3))
-    spread = np.full((rows, columns), np.inf)
+    spread = np.empty((rows, columns))
     full = 0.0
     for row in range(rows):
         for column in range(columns):
             full = max(full, sums[row, column, 0])
+            spread[row, column] = np.inf
     for row in range(1, rows - 1):
         for column in range(1, columns - 1):
             for k in range(10):

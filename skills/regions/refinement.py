@@ -37,11 +37,12 @@ def refine_regions(
         image.depth, lens, size, patches.sums, coarse.labels, coarse.planes, parameters.pixel_offset, labels,
         inverse_depth,
     )  # fmt: skip
-    labels = _majority(labels)
+    smooth = labels.copy()
+    _majority(labels, smooth)
     planes = coarse.planes.copy()
     sums, bend = np.zeros((len(planes), SUMS)), np.zeros(len(planes))
-    _refit(labels, inverse_depth, lens, size, parameters.patches_min, sums, planes, bend)
-    return Segmentation(labels, planes, coarse.sigma), bend
+    _refit(smooth, inverse_depth, lens, size, parameters.patches_min, sums, planes, bend)
+    return Segmentation(smooth, planes, coarse.sigma), bend
 
 
 @kernel
@@ -109,10 +110,9 @@ def _label_cells(
 
 
 @kernel
-def _majority(labels: Labels) -> Labels:
+def _majority(labels: Labels, smooth: Labels) -> None:
     """A label that few of its 3 x 3 cells share gives way to one that five of them have: specks go, edges settle."""
     rows, columns = labels.shape
-    smooth = labels.copy()
     for row in range(1, rows - 1):
         for column in range(1, columns - 1):
             here = labels[row, column]
@@ -129,7 +129,6 @@ def _majority(labels: Labels) -> Labels:
                         other, others = label, 1
             if same < 4 and others >= 5:
                 smooth[row, column] = other
-    return smooth
 
 
 @kernel
@@ -172,4 +171,5 @@ def _refit(
     for label in range(planes.shape[0]):
         bend[label] = fit_plane(sums[label], plane) if sums[label, 0] >= cells_min else np.inf
         if np.isfinite(bend[label]):
-            planes[label] = plane
+            for k in range(3):
+                planes[label, k] = plane[k]
