@@ -71,7 +71,9 @@ class FootstepParameters:
 
     lattice: float = parameter(0.04, unit="m", meaning="spacing of the search lattice", minimum=0.01, maximum=0.2)
     headings: int = parameter(36, unit="1", meaning="headings of the lattice in a full turn", minimum=8, maximum=360)
-    heuristic_weight: float = parameter(1.5, unit="1", meaning="weight of the cost to go", minimum=0.0, maximum=10.0)
+    heuristic_weight: float = parameter(
+        3.0, unit="1", meaning="weight of the least cost to go", minimum=0.0, maximum=10.0
+    )
     max_expansions: int = parameter(6000, unit="1", meaning="nodes a search may expand", minimum=1)
     minimum_steps: int = parameter(3, unit="1", meaning="fewest steps to a sub-goal", minimum=1, maximum=10)
     window_margin: float = parameter(0.7, unit="m", meaning="ground searched on all sides of the path", minimum=0.3)

@@ -4,7 +4,8 @@ The lattice is anchored at the stance foot, so a node's pose is exact and every 
 returned. Limits and costs follow Griffin et al., "Footstep planning for autonomous walking over rough terrain" (2019).
 Snapping a sole is what costs time, so an edge whose foothold is not known yet enters the open list with the cost it
 would have on level ground and is snapped only when it comes first (Cohen et al., "Lazy weighted A*", 2014). A node is
-closed once; the cost is at most `heuristic_weight` times the best on the lattice.
+closed once; on a straight path the cost is at most `heuristic_weight` times the best on the lattice. The estimate
+counts the fewest steps at the least cost of a step, about half of what steps on rough ground cost.
 """
 
 from __future__ import annotations
@@ -63,6 +64,14 @@ NODE = np.dtype(
 _JUDGED, _OPEN, _CLOSED = 1, 2, 3
 # What the ground is under a foot of either side: outcome of the snap, height, slopes, supported share.
 GROUND = np.dtype([*((name, np.float64) for name in ("z", "a", "b", "share")), ("outcome", np.uint8)])
+# What a step from a stance foot depends on.
+STAND = np.dtype(
+    [
+        *((name, np.float64) for name in ("x", "y", "z", "cos", "sin", "uphill", "cost")),
+        *((name, np.float64) for name in ("swing_x", "swing_y", "swing_z")),
+        ("depth", np.int64),
+    ]
+)
 # An edge in the open list; its cost is negative as long as it is only estimated.
 EDGE = np.dtype([("estimate", np.float64), ("cost", np.float64), ("node", np.int64), ("parent", np.int64)])
 
@@ -118,22 +127,23 @@ def search_footsteps(
     root = (lattice[3] * ny + lattice[4]) * nx + lattice[5] + (0 if feet[0, 6] > 0 else stances)
     ground = grounds[root % stances]
     ground.outcome, ground.z, ground.a, ground.b, ground.share = FOOTHOLD, feet[0, 2], feet[0, 4], feet[0, 5], 1.0
-    trigonometry = np.empty((headings, 3))
-    for k in range(headings):
-        yaw = feet[0, 3] + (k - lattice[3]) * limits.heading
+    trigonometry = np.empty((headings + 1, 3))
+    for k in range(headings + 1):
+        yaw = feet[0, 3] + (k - lattice[3]) * limits.heading if k < headings else feet[1, 3]
         trigonometry[k, 0], trigonometry[k, 1], trigonometry[k, 2] = yaw, np.cos(yaw), np.sin(yaw)
     # The node past the last stands for the swing foot, where it is now.
     nodes[root].parent = 2 * stances
-    _judge(limits, goal, path, feet[0, 0], feet[0, 1], feet[0, 3], feet[0, 6], nodes[root])
-    _judge(limits, goal, path, feet[1, 0], feet[1, 1], feet[1, 3], feet[1, 6], nodes[2 * stances])
+    _judge(limits, goal, path, feet[0, 0], feet[0, 1], trigonometry[lattice[3]], feet[0, 6], nodes[root])
+    _judge(limits, goal, path, feet[1, 0], feet[1, 1], trigonometry[headings], feet[1, 6], nodes[2 * stances])
     start_to_go, best = nodes[root].to_go, root
     if goal.final and nodes[root].arrived and nodes[2 * stances].arrived:
         return REACHED, root, 2 * stances, 0.0, 0, 0.0
     nodes[root].status = _OPEN
     children = np.empty((2 * headings, _most_children(limits), 3), np.int64)
-    counts = np.full(2 * headings, -1)
+    counts = np.zeros(2 * headings, np.int64)
+    stand = np.empty(1, STAND)[0]
     size = _push(open_list, 0, 0.0, 0.0, root, 2 * stances)
-    expansions = 0
+    outcome, expansions = EXHAUSTED, 0
     while size > 0:
         node, stance, cost = open_list[0].node, open_list[0].parent, open_list[0].cost
         size = _pop(open_list, size)
@@ -141,13 +151,18 @@ def search_footsteps(
         if nodes[node].status == _CLOSED and not square:
             continue
         if cost < 0.0:
-            cost = _edge_cost(
-                cells, planes, resolution, snap_limits, samples, limits, reference, feet, lattice, trigonometry,
-                nodes, grounds, stance, node,
-            )  # fmt: skip
+            snap = node % stances
+            x, y = _place(feet, lattice, limits, node)
+            if grounds[snap].outcome == UNSEEN:
+                yaw = trigonometry[snap // (ny * nx), 0]
+                _snap(cells, planes, resolution, snap_limits, samples, x, y, yaw, grounds[snap])
+            _stand_on(limits, feet, lattice, trigonometry, nodes, grounds, stance, stand)
+            cost = _step_cost(limits, reference, stand, x, y, grounds[snap])
             if cost < 0.0:
                 rejections[int(-cost)] += 1
-            elif _improve(nodes, node, stance, cost) or square:
+                continue
+            cost += stand.cost + nodes[node].off_path_cost
+            if _improve(nodes, node, stance, cost) or square:
                 size = _push(open_list, size, cost + limits.heuristic_weight * nodes[node].to_go, cost, node, stance)
                 if nodes[node].to_go < nodes[best].to_go:
                     best = node
@@ -158,59 +173,55 @@ def search_footsteps(
         if nodes[node].arrived and not goal.final and nodes[node].depth >= limits.minimum_steps:
             return REACHED, node, stance, cost, expansions, start_to_go - nodes[node].to_go
         if expansions >= max_expansions:
-            return (
-                OUT_OF_BUDGET,
-                best,
-                nodes[best].parent,
-                nodes[best].cost,
-                expansions,
-                start_to_go - nodes[best].to_go,
-            )
+            outcome = OUT_OF_BUDGET
+            break
         expansions += 1
         side, heading = node // stances, node % stances // (ny * nx)
-        iy, ix = node % (ny * nx) // nx, node % nx
+        iy, ix = node // nx % ny, node % nx
         table = side * headings + heading
-        if counts[table] < 0:
+        if counts[table] == 0:
             counts[table] = _fill_children(limits, trigonometry, heading, 2.0 * side - 1.0, children[table])
         if size + counts[table] > open_list.shape[0]:
-            longer = np.empty(2 * open_list.shape[0], open_list.dtype)
-            for k in range(size):
-                longer[k] = open_list[k]
-            open_list = longer
+            open_list = _longer(open_list, size)
+        _stand_on(limits, feet, lattice, trigonometry, nodes, grounds, node, stand)
         for k in range(counts[table]):
-            jx, jy, turned = ix + children[table, k, 0], iy + children[table, k, 1], children[table, k, 2]
+            dx, dy, turned = children[table, k, 0], children[table, k, 1], children[table, k, 2]
+            jx, jy = ix + dx, iy + dy
             if jx < 0 or jy < 0 or jx >= nx or jy >= ny:
                 rejections[_OUTSIDE] += 1
                 continue
             snap = (turned * ny + jy) * nx + jx
-            if grounds[snap].outcome > FOOTHOLD:
-                rejections[grounds[snap].outcome] += 1
+            ground = grounds[snap]
+            if ground.outcome > FOOTHOLD:
+                rejections[ground.outcome] += 1
                 continue
-            child = (1 - side) * stances + snap
-            if nodes[child].status == 0:
-                x, y = _place(feet, lattice, limits.lattice, snap)
-                nodes[child].status = _JUDGED
-                _judge(limits, goal, path, x, y, trigonometry[turned, 0], 2.0 * side - 1.0, nodes[child])
-            square = goal.final and nodes[child].arrived and nodes[node].arrived
-            if nodes[child].status == _CLOSED and not square:
+            index = (1 - side) * stances + snap
+            child = nodes[index]
+            square = goal.final and child.arrived and nodes[node].arrived
+            if child.status == _CLOSED and not square:
                 continue
-            to_go = limits.heuristic_weight * nodes[child].to_go
-            if grounds[snap].outcome == UNSEEN:
-                least = cost + limits.step_cost + nodes[child].off_path_cost
-                if nodes[child].status != _OPEN or least < nodes[child].cost:
-                    size = _push(open_list, size, least + to_go, -1.0, child, node)
+            x, y = feet[0, 0] + (jx - lattice[5]) * limits.lattice, feet[0, 1] + (jy - lattice[4]) * limits.lattice
+            if child.status == 0:
+                child.status = _JUDGED
+                _judge(limits, goal, path, x, y, trigonometry[turned], 2.0 * side - 1.0, child)
+                square = goal.final and child.arrived and nodes[node].arrived
+            least = cost + limits.step_cost + child.off_path_cost
+            if child.status == _OPEN and least >= child.cost and not square:
                 continue
-            child_cost = _edge_cost(
-                cells, planes, resolution, snap_limits, samples, limits, reference, feet, lattice, trigonometry,
-                nodes, grounds, node, child,
-            )  # fmt: skip
+            to_go = limits.heuristic_weight * child.to_go
+            if ground.outcome == UNSEEN:
+                size = _push(open_list, size, least + to_go, -1.0, index, node)
+                continue
+            child_cost = _step_cost(limits, reference, stand, x, y, ground)
             if child_cost < 0.0:
                 rejections[int(-child_cost)] += 1
-            elif _improve(nodes, child, node, child_cost) or square:
-                size = _push(open_list, size, child_cost + to_go, child_cost, child, node)
-                if nodes[child].to_go < nodes[best].to_go:
-                    best = child
-    return EXHAUSTED, best, nodes[best].parent, nodes[best].cost, expansions, start_to_go - nodes[best].to_go
+                continue
+            child_cost += stand.cost + child.off_path_cost
+            if _improve(nodes, index, node, child_cost) or square:
+                size = _push(open_list, size, child_cost + to_go, child_cost, index, node)
+                if child.to_go < nodes[best].to_go:
+                    best = index
+    return outcome, best, nodes[best].parent, nodes[best].cost, expansions, start_to_go - nodes[best].to_go
 
 
 @kernel
@@ -224,97 +235,114 @@ def _improve(nodes: Records, node: int, parent: int, cost: float) -> bool:
 
 
 @kernel
-def _edge_cost(
+def _snap(
     cells: NDArray[np.int32],
     planes: Array,
     resolution: float,
     snap_limits: Records,
     samples: Array,
+    x: float,
+    y: float,
+    yaw: float,
+    ground: Records,
+) -> None:
+    """Snap a sole to the ground and remember what it found."""
+    found = np.zeros(4)
+    ground.outcome = snap_sole(cells, planes, resolution, snap_limits, samples, x, y, yaw, found)
+    ground.z, ground.a, ground.b, ground.share = found[0], found[1], found[2], found[3]
+
+
+@kernel
+def _stand_on(
     limits: Records,
-    reference: Array,
     feet: Array,
     lattice: NDArray[np.int64],
     trigonometry: Array,
     nodes: Records,
     grounds: Records,
     stance: int,
-    node: int,
-) -> float:
-    """Cost of the way to a node over a stance; where the step is not allowed, the reason as a negative number."""
+    stand: Records,
+) -> None:
+    """Fill in what a step from a stance foot depends on."""
     layer = lattice[1] * lattice[2]
     stances = lattice[0] * layer
-    x, y = _place(feet, lattice, limits.lattice, node)
-    ground, below = grounds[node % stances], grounds[stance % stances]
-    if ground.outcome == UNSEEN:
-        found = np.zeros(4)
-        ground.outcome = snap_sole(
-            cells, planes, resolution, snap_limits, samples, x, y, trigonometry[node % stances // layer, 0], found
-        )
-        ground.z, ground.a, ground.b, ground.share = found[0], found[1], found[2], found[3]
-    if ground.outcome != FOOTHOLD:
-        return -float(ground.outcome)
+    ground = grounds[stance % stances]
+    heading = stance % stances // layer
+    stand.x, stand.y = _place(feet, lattice, limits, stance)
+    stand.z, stand.cos, stand.sin = ground.z, trigonometry[heading, 1], trigonometry[heading, 2]
+    stand.uphill = ground.a * stand.cos + ground.b * stand.sin
+    stand.cost, stand.depth = nodes[stance].cost, nodes[stance].depth
     before = nodes[stance].parent
     if before == 2 * stances:
-        swing_x, swing_y, swing_z = feet[1, 0], feet[1, 1], feet[1, 2]
+        stand.swing_x, stand.swing_y, stand.swing_z = feet[1, 0], feet[1, 1], feet[1, 2]
     else:
-        swing_x, swing_y = _place(feet, lattice, limits.lattice, before)
-        swing_z = grounds[before % stances].z
-    stance_x, stance_y = _place(feet, lattice, limits.lattice, stance)
-    heading = stance % stances // layer
-    cos, sin = trigonometry[heading, 1], trigonometry[heading, 2]
-    length = cos * (x - stance_x) + sin * (y - stance_y)
-    width = abs(cos * (y - stance_y) - sin * (x - stance_x))
-    rise = ground.z - below.z
+        stand.swing_x, stand.swing_y = _place(feet, lattice, limits, before)
+        stand.swing_z = grounds[before % stances].z
+
+
+@kernel
+def _step_cost(limits: Records, reference: Array, stand: Records, x: float, y: float, ground: Records) -> float:
+    """Cost of a step but for being off the path; where it is not allowed, the reason as a negative number."""
+    if ground.outcome != FOOTHOLD:
+        return -float(ground.outcome)
+    length = stand.cos * (x - stand.x) + stand.sin * (y - stand.y)
+    width = abs(stand.cos * (y - stand.y) - stand.sin * (x - stand.x))
+    rise = ground.z - stand.z
     reach = np.hypot(length, width - limits.ideal_width)
-    reason = 0
     if rise > limits.height_change:
-        reason = _TOO_HIGH
-    elif rise < -limits.height_change:
-        reason = _TOO_LOW
-    elif rise > limits.reach_up_height and reach > limits.reach_up:
-        reason = _FAR_UP
-    elif rise < -limits.reach_down_height and reach > limits.reach_down:
-        reason = _FAR_DOWN
-    elif rise < -limits.uphill_drop and below.a * cos + below.b * sin > limits.uphill_tangent:
-        reason = _UPHILL
-    elif np.hypot(x - swing_x, y - swing_y) > limits.swing_reach:
-        reason = _SWING_LONG
-    elif abs(ground.z - swing_z) > limits.swing_height_change:
-        reason = _SWING_HIGH
-    if reason > 0:
-        return -float(reason)
+        return -float(_TOO_HIGH)
+    if rise < -limits.height_change:
+        return -float(_TOO_LOW)
+    if rise > limits.reach_up_height and reach > limits.reach_up:
+        return -float(_FAR_UP)
+    if rise < -limits.reach_down_height and reach > limits.reach_down:
+        return -float(_FAR_DOWN)
+    if rise < -limits.uphill_drop and stand.uphill > limits.uphill_tangent:
+        return -float(_UPHILL)
+    if np.hypot(x - stand.swing_x, y - stand.swing_y) > limits.swing_reach:
+        return -float(_SWING_LONG)
+    if abs(ground.z - stand.swing_z) > limits.swing_height_change:
+        return -float(_SWING_HIGH)
     cost = (
-        nodes[stance].cost
-        + limits.step_cost
-        + nodes[node].off_path_cost
+        limits.step_cost
         + limits.height_cost * abs(rise)
         + limits.tilt_cost * np.hypot(ground.a, ground.b)
         + limits.width_cost * abs(width - limits.ideal_width)
         + limits.share_cost * (1.0 - ground.share)
     )
-    depth = nodes[stance].depth
-    if depth < reference.shape[0] and np.isfinite(reference[depth, 0]):
-        cost += limits.reference_cost * np.hypot(x - reference[depth, 0], y - reference[depth, 1])
+    if stand.depth < reference.shape[0] and np.isfinite(reference[stand.depth, 0]):
+        off_x, off_y = x - reference[stand.depth, 0], y - reference[stand.depth, 1]
+        cost += limits.reference_cost * np.hypot(off_x, off_y)
     return cost
 
 
 @kernel
-def _place(feet: Array, lattice: NDArray[np.int64], spacing: float, node: int) -> tuple[float, float]:
+def _place(feet: Array, lattice: NDArray[np.int64], limits: Records, node: int) -> tuple[float, float]:
     """Where a node is: x, y from the corner."""
     ix, iy = node % lattice[2] - lattice[5], node // lattice[2] % lattice[1] - lattice[4]
-    return feet[0, 0] + ix * spacing, feet[0, 1] + iy * spacing
+    return feet[0, 0] + ix * limits.lattice, feet[0, 1] + iy * limits.lattice
+
+
+@kernel
+def _longer(open_list: Records, size: int) -> Records:
+    """The same open list with twice the room."""
+    longer = np.empty(2 * open_list.shape[0], EDGE)
+    for k in range(size):
+        longer[k] = open_list[k]
+    return longer
 
 
 @kernel
 def _judge(
-    limits: Records, goal: Records, path: Array, x: float, y: float, yaw: float, sign: float, node: Records
+    limits: Records, goal: Records, path: Array, x: float, y: float, heading: Array, sign: float, node: Records
 ) -> None:
     """Judge a foot by the body beside it: the cost of being off the path, the estimated cost to go, whether it arrived.
 
     The estimate counts the steps that are needed at least, by the way left along the path and by the heading.
     """
-    body_x = x + 0.5 * sign * limits.ideal_width * np.sin(yaw)
-    body_y = y - 0.5 * sign * limits.ideal_width * np.cos(yaw)
+    yaw = heading[0]
+    body_x = x + 0.5 * sign * limits.ideal_width * heading[2]
+    body_y = y - 0.5 * sign * limits.ideal_width * heading[1]
     nearest, arc_length, off_heading = np.inf, 0.0, 0.0
     last = path.shape[0] - 1
     for i in range(last):
@@ -362,7 +390,7 @@ def _fill_children(limits: Records, trigonometry: Array, heading: int, sign: flo
 
     Rows of lattice offsets in x and y and heading; returns how many.
     """
-    headings = trigonometry.shape[0]
+    headings = trigonometry.shape[0] - 1
     cos, sin = trigonometry[heading, 1], trigonometry[heading, 2]
     most = int(np.ceil((limits.reach + limits.maximum_width) / limits.lattice))
     turns = int(max(limits.inward_yaw, limits.outward_yaw) / limits.heading + 1e-9)

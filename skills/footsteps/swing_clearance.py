@@ -36,7 +36,7 @@ def swing_clearance(
 ) -> SwingClearance:
     """Find the way of a foot between two footholds that clears the ground by the parameters' margin."""
     start, end = T_world_start.p, T_world_end.p
-    crossing = _crossing(T_world_start, T_world_end, terrain.resolution)
+    crossing = _crossing(T_world_start, T_world_end, 2.0 * terrain.resolution)
     ground = -_clearances(terrain, crossing, parameters, parameters.swing_margin)
     higher = max(start[2], end[2])
     apex = max(float(np.max(ground)) + parameters.swing_clearance, higher + parameters.swing_height)
@@ -49,31 +49,6 @@ def swing_clearance(
     first = _corner(terrain, T_world_start, T_world_end, apex, up_first, parameters)
     last = _corner(terrain, T_world_end, T_world_start, apex, forward_first, parameters)
     return SwingClearance(apex - higher, readonly((first, last)))
-
-
-def swing_soles(T_world_start: Pose, waypoints_world: Array, T_world_end: Pose, spacing: float) -> Array:
-    """The soles along a way, as its clearance is checked.
-
-    Args:
-        T_world_start: sole frame at lift-off.
-        waypoints_world: (2, 3) of a `SwingClearance`.
-        T_world_end: sole frame at landing.
-        spacing: largest distance between two of them [m].
-
-    Returns:
-        (N, 6) rows x, y, z, yaw of the sole's centre in the world and slopes dz/dx, dz/dy of the sole.
-    """
-    lift, landing = (
-        _leg(T, T_other, corner, spacing)
-        for T, T_other, corner in (
-            (T_world_start, T_world_end, waypoints_world[0]),
-            (T_world_end, T_world_start, waypoints_world[1]),
-        )
-    )
-    count = 2 + int(np.linalg.norm(waypoints_world[1] - waypoints_world[0]) / spacing)
-    crossing = np.linspace(lift[-1], landing[-1], count)
-    crossing[:, 3] = lift[-1, 3] + np.linspace(0.0, 1.0, count) * wrap_angle(landing[-1, 3] - lift[-1, 3])
-    return np.concatenate((lift, crossing, landing[::-1]))
 
 
 def _corner(
