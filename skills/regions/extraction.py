@@ -14,7 +14,7 @@ import numpy as np
 
 from skills.geometry.camera import DepthImage
 from skills.geometry.polygon import convex_parts, signed_area, simplify
-from skills.geometry.pose import Array, Pose
+from skills.geometry.pose import Array, Pose, readonly
 from skills.regions.growing import Labels, Segmentation, grow_regions
 from skills.regions.outline import trace_outlines
 from skills.regions.parameters import RegionParameters
@@ -51,6 +51,9 @@ class RejectedRegion:
     reason: str
     outline_image: Array
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "outline_image", readonly(self.outline_image, (None, 2)))
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RegionExtraction:
@@ -71,6 +74,9 @@ class RegionExtraction:
     cell_size: int
     region_labels: tuple[int, ...]
     rejected: tuple[RejectedRegion, ...]
+
+    def __post_init__(self) -> None:
+        self.labels.flags.writeable = False
 
 
 DEFAULT_PARAMETERS = RegionParameters()
@@ -122,7 +128,7 @@ def _regions_of(
         if outline.area <= 0.0:
             continue
         label, R = outline.label, R_world_regions[outline.label]
-        reason = _reason_against(outline.area, R, outline.depth, bend[label], parameters)
+        reason = _reason_against(outline, R, bend[label], parameters)
         if reason:
             rejected.append(RejectedRegion(label, reason, outline.points_image))
             continue
@@ -131,6 +137,9 @@ def _regions_of(
         hull, *cut_out = (
             simplify(points - (x, y), parameters.outline_tolerance) for points in (outline.points, *inside)
         )
+        if len(hull) < 3:
+            rejected.append(RejectedRegion(label, "thinner than the outline's tolerance", outline.points_image))
+            continue
         cut_out = tuple(hole for hole in cut_out if len(hole) > 2)
         parts = convex_parts(hull, parameters.convex_tolerance, cut_out)
         area = float(signed_area(hull)) + sum(float(signed_area(hole)) for hole in cut_out)
@@ -144,7 +153,8 @@ def _regions_of(
 class _Outline:
     """A loop around a flat piece or, clockwise, around a hole in it.
 
-    `points` are x, y and `height` is the z that they share, along the axes of the region from the world's origin.
+    `points` are x, y and `height` is the z that they share, along the axes of the region from the world's origin;
+    `patches` is its size in the image and `depth` its mean.
     """
 
     label: int
@@ -152,6 +162,7 @@ class _Outline:
     points: Array
     height: float
     area: float
+    patches: float
     depth: float
 
 
@@ -175,12 +186,16 @@ def _back_project(
     following[ends - 1] = starts
     turns = points[:, 0] * points[following, 1] - points[following, 0] * points[:, 1]
     areas = 0.5 * np.add.reduceat(turns, starts)
+    pixels = -0.5 * np.add.reduceat(uv[:, 0] * uv[following, 1] - uv[following, 0] * uv[:, 1], starts)
+    patches = pixels / (2 * cell_size) ** 2
     depths = np.add.reduceat(depth, starts) / sizes
     heights = np.add.reduceat(points[:, 2], starts) / sizes
     return [
-        _Outline(label, uv[a:b], points[a:b, :2], height, area, mean_depth)
-        for (label, _), a, b, height, area, mean_depth in zip(
-            loops, starts.tolist(), ends.tolist(), heights.tolist(), areas.tolist(), depths.tolist(), strict=True
+        _Outline(label, uv[a:b], points[a:b, :2], height, area, size, mean_depth)
+        for (label, _), a, b, height, area, size, mean_depth in zip(
+            loops,
+            *(values.tolist() for values in (starts, ends, heights, areas, patches, depths)),
+            strict=True,
         )
     ]
 
@@ -195,14 +210,16 @@ def _frames(planes: Array, T_world_camera: Pose) -> Array:
     return np.stack((np.cross(y, normals), y, normals), axis=2)
 
 
-def _reason_against(area: float, R: Array, depth: float, bend: float, parameters: RegionParameters) -> str:
+def _reason_against(outline: _Outline, R: Array, bend: float, parameters: RegionParameters) -> str:
     slope = math.acos(min(max(R[2, 2], -1.0), 1.0))
-    if area < parameters.area_min:
-        return f"area {area:.4f} m^2, limit {parameters.area_min:g} m^2"
+    if outline.area < parameters.area_min:
+        return f"area {outline.area:.4f} m^2, limit {parameters.area_min:g} m^2"
     if slope > parameters.slope_max:
         return f"slope {np.rad2deg(slope):.0f} deg, limit {np.rad2deg(parameters.slope_max):.0f} deg"
-    if depth < parameters.distance_min:
-        return f"{depth:.2f} m from the camera, limit {parameters.distance_min:g} m: own body"
+    if outline.depth < parameters.distance_min:
+        return f"{outline.depth:.2f} m from the camera, limit {parameters.distance_min:g} m: own body"
+    if outline.patches < parameters.patches_min:
+        return f"{outline.patches:.0f} patches, limit {parameters.patches_min}"
     if math.isinf(bend):
         return "too thin to fit a plane"
     if bend > parameters.bend_max:
