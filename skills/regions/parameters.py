@@ -11,8 +11,8 @@ from skills.parameters import parameter, parameters
 class RegionParameters:
     """How a depth image is cut into planar regions.
 
-    The tolerances on links are tight because blocks of a field touch: a normal test of 18 degrees cannot part a level
-    block from one tilted by 11, and seams chain through cells that straddle them.
+    Blocks of a field touch, and links from patch to patch chain across their seams. So the tolerances to the plane of
+    the whole region decide, not those between neighbours: a level block parts from one tilted by 11 degrees.
     """
 
     patch_size: int = parameter(
