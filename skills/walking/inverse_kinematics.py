@@ -25,6 +25,7 @@ _LEAST_ORIENTATION_WEIGHT = 0.005
 _DAMPING = 0.01
 _LEAST_DAMPING = 1e-10
 _LONGEST_STEP = 0.3
+_LEAST_KNEE_BEND = 0.05
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,7 +60,11 @@ class InverseKinematics:
         legs = [joint for side in Side for joint in model.legs[side].joints]
         self._columns = np.array([*range(6), *(6 + joint for joint in legs)])
         self._places = np.array([7 + joint for joint in legs])
-        self._lower = model.lower_limits[legs]
+        self._lower = model.lower_limits[legs].copy()
+        for index, side in enumerate(Side):
+            # A knee bent backwards reaches the same ankle and would have to pass the straight leg to come back.
+            knee = 6 * index + 3
+            self._lower[knee] = max(self._lower[knee], model.legs[side].knee_offset + _LEAST_KNEE_BEND)
         self._upper = model.upper_limits[legs]
         self._weights = _WEIGHTS.copy()
 
@@ -143,9 +148,8 @@ class InverseKinematics:
         return q
 
     def _jacobian(self) -> Array:
-        jacobian = np.empty((18, 18))
+        jacobian = np.zeros((18, 18))
         jacobian[0:3] = self._com_jacobian[:, self._columns]
-        jacobian[3:6] = 0.0
         jacobian[3:6, 3:6] = self._R_world_pelvis
         for row, side in ((6, Side.LEFT), (12, Side.RIGHT)):
             frame = self._model.sole_frames[side]

@@ -51,7 +51,7 @@ class SwingTrajectory:
     def poses(self, times: Array) -> tuple[Array, Array]:
         """Sole orientations (M, 3, 3) and positions (M, 3) in the world at times since lift-off (M,) [s, m]."""
         shares = np.clip(np.asarray(times) / self.duration, 0.0, 1.0)
-        return np.stack([self._rotation(float(u)) for u in shares]), self._spline.values(shares)
+        return self._rotations(shares), self._spline.values(shares)
 
     def _rotation(self, u: float) -> Array:
         level, aligned = self._parameters.swing_level, self._parameters.swing_aligned
@@ -59,6 +59,29 @@ class SwingTrajectory:
         leaving = 1.0 - minimum_jerk_at(u / level)
         arriving = minimum_jerk_at((u - level) / (aligned - level))
         return rotation_z(yaw) @ pin.exp3(leaving * self._start_tilt + arriving * self._end_tilt)
+
+    def _rotations(self, shares: Array) -> Array:
+        level, aligned = self._parameters.swing_level, self._parameters.swing_aligned
+        yaw = self._yaw + self._turn * minimum_jerk(shares / aligned)
+        leaving = 1.0 - minimum_jerk(shares / level)
+        arriving = minimum_jerk((shares - level) / (aligned - level))
+        tilts = leaving[:, None] * self._start_tilt + arriving[:, None] * self._end_tilt
+        headings = np.zeros((len(shares), 3, 3))
+        headings[:, 0, 0] = headings[:, 1, 1] = np.cos(yaw)
+        headings[:, 1, 0], headings[:, 0, 1], headings[:, 2, 2] = np.sin(yaw), -np.sin(yaw), 1.0
+        return headings @ _exponentials(tilts)
+
+
+def _exponentials(rotation_vectors: Array) -> Array:
+    """Rotation matrices of rotation vectors (M, 3), (M, 3, 3) (Rodrigues)."""
+    angles = np.linalg.norm(rotation_vectors, axis=1)[:, None, None]
+    x, y, z = rotation_vectors.T
+    skew = np.zeros((len(rotation_vectors), 3, 3))
+    skew[:, 2, 1], skew[:, 0, 2], skew[:, 1, 0] = x, y, z
+    skew -= skew.transpose(0, 2, 1)
+    # sinc keeps both factors finite without a tilt.
+    first, second = np.sinc(angles / np.pi), 0.5 * np.sinc(angles / (2.0 * np.pi)) ** 2
+    return np.eye(3) + first * skew + second * (skew @ skew)
 
 
 def _polyline(T_world_start: Pose, step: Footstep, parameters: WalkingParameters) -> Array:

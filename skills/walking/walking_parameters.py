@@ -81,7 +81,7 @@ class WalkingParameters:
     control_period: float = parameter(0.01, unit="s", meaning="longest control step", minimum=0.0005, maximum=0.02)
     control_period: float = parameter(0.01, unit="s", meaning="longest control step", minimum=0.0005, maximum=0.02)
     ik_iterations: int = parameter(5, unit="1", meaning="iterations of inverse kinematics a control step", minimum=1)
-    ik_tolerance: float = parameter(1e-9, unit="m", meaning="error at which its iterations end", minimum=0.0)
+    ik_tolerance: float = parameter(1e-7, unit="m", meaning="error at which its iterations end", minimum=0.0)
     sole_residual: float = parameter(
         0.005, unit="m", meaning="sole error that inverse kinematics may leave", minimum=0.0
     )

@@ -100,3 +100,12 @@ def test_the_sole_is_level_at_mid_swing_and_turns_the_shorter_way(make_step: Cal
     swing = SwingTrajectory(start, make_step(0, Side.LEFT, end, (1.0, 0.5)), PARAMETERS)
     np.testing.assert_allclose(swing.pose(0.5).R[2, 2], 1.0, atol=1e-9)
     assert all(abs(swing.pose(t).yaw) > 2.9 for t in np.linspace(0.0, 1.0, 50))
+
+
+def test_many_poses_are_the_single_ones(make_step: Callable[..., Footstep]) -> None:
+    end = Pose.from_xyz_rpy((0.4, 0.1, 0.1), (0.2, -0.1, 0.4))
+    swing = SwingTrajectory(Pose.from_xyz_rpy((0, 0, 0), (0.0, 0.3, 0.0)), make_step(0, Side.LEFT, end), PARAMETERS)
+    times = np.linspace(0.0, 0.79, 20)
+    rotations, positions = swing.poses(times)
+    np.testing.assert_allclose(rotations, [swing.pose(t).R for t in times], atol=1e-12)
+    np.testing.assert_allclose(positions, [swing.pose(t).p for t in times], atol=1e-12)
