@@ -45,12 +45,14 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
     configuration = load_configuration(options.preset, assignments.subjects)
     spec = load_tree(tree_path(options.tree))
     course = _course(options, assignments.course)
-    warm_up(configuration)
-    for folder in filter(None, (options.out, options.record and options.record.parent)):
-        folder.mkdir(parents=True, exist_ok=True)
-
     world = _world(course, configuration, options.seed)
     tree = _tree(spec, world, configuration, assignments, options)
+    # From here on the input is known to be good.
+    for folder in filter(None, (options.out, options.record and options.record.parent)):
+        folder.mkdir(parents=True, exist_ok=True)
+    if options.out is not None:
+        tree.trace = Trace(options.out / "trace.jsonl")
+    warm_up(configuration)
     statistics = Statistics(world, configuration)
     watching: list[Observer] = [statistics, *observers]
     recording = None
@@ -173,7 +175,6 @@ def _tree(
             executor=executor,
             parameters=configuration.by_subject(),
             settings=assignments.nodes,
-            trace=Trace(None if options.out is None else options.out / "trace.jsonl"),
         )
     except (SettingError, ParameterError) as error:
         executor.shutdown()

@@ -75,14 +75,6 @@ class Pose:
         x, y, z, w = np.asarray(xyzw, dtype=np.float64)
         return cls.from_quaternion_wxyz((w, x, y, z), p)
 
-    @classmethod
-    def on_plane(cls, x: float, y: float, z: float, yaw: float, normal: ArrayLike) -> Pose:
-        """A sole on a plane: z along the upward unit normal, x along the heading `yaw` projected into the plane."""
-        up = np.asarray(normal, dtype=np.float64)
-        left = np.cross(up, (np.cos(yaw), np.sin(yaw), 0.0))
-        left /= np.linalg.norm(left)
-        return cls(np.column_stack((np.cross(left, up), left, up)), np.array((x, y, z)))
-
     @property
     def quaternion_wxyz(self) -> Array:
         """Unit quaternion (w, x, y, z) with w >= 0."""

@@ -171,7 +171,7 @@ def test_a_line_faces_its_viewer_with_its_width():
 
 def test_plans_and_regions_become_overlays_in_their_planes():
     sole = np.array([[0.13, 0.07], [-0.13, 0.07], [-0.13, -0.07], [0.13, -0.07]])
-    T = Pose.on_plane(0.4, 0.1, 0.2, 0.3, np.array((0.1, 0.0, 1.0)) / np.hypot(0.1, 1.0))
+    T = Pose.from_xyz_rpy((0.4, 0.1, 0.2), (0.0, 0.1, 0.3))
     step = Footstep(0, Side.LEFT, T, sole, 0.9, 0.3, 0.1, np.zeros((0, 3)))
     region = PlanarRegion(T, 2 * sole, (2 * sole,), 0.14, 0.0)
     for overlay in (*planned_steps([step]), *region_outlines([region], [RED])):

@@ -1,0 +1,82 @@
+"""Whole walks from depth image to goal; the camera is small, the rest is what `lookstep run` runs."""
+
+import dataclasses
+import json
+
+import pytest
+
+import lookstep
+from behaviors.leaves import plan_steps
+from lookstep.summary import Outcome, Summary
+from skills.footsteps import FootstepPlan
+from skills.geometry import Pose
+
+SMALL_CAMERA = ("camera.resolution=0.3125",)
+
+
+def walk(course: str, *, seed: int = 0, time_limit: float = 120.0, **options) -> Summary:
+    return lookstep.run(course=course, seed=seed, time_limit=time_limit, assignments=SMALL_CAMERA, **options)
+
+
+@pytest.mark.parametrize(("course", "seed"), [("flat", 0), ("uneven_flat", 1), ("rough", 2), ("stairs", 0)])
+def test_robot_reaches_the_goal_without_a_pause(course, seed):
+    summary = walk(course, seed=seed)
+    assert summary.outcome is Outcome.GOAL_REACHED, summary.reason
+    assert summary.pauses.count == 0
+    assert summary.min_support_fraction is not None and summary.min_support_fraction >= 0.6
+    assert summary.first_step_after_s is not None and summary.first_step_after_s < 2.0
+    assert summary.steps.total == summary.steps.flat + summary.steps.uneven_flat + summary.steps.rough + (
+        summary.steps.ramp
+    )
+
+
+def test_robot_stops_honestly_where_the_ground_ends(tmp_path):
+    course = tmp_path / "pier.yaml"
+    course.write_text(
+        "start: {x: 0, y: 0}\ngoal: {x: 4, y: 0}\nobjects:\n  - {size: [3.0, 1.2, 0.2], position: [0.5, 0, -0.1]}\n  - {size: [1.0, 1.2, 0.2], position: [4.0, 0, -0.1]}\n"
+    )
+    summary = walk(str(course), time_limit=25.0)
+    assert summary.outcome is Outcome.TIMEOUT
+    assert 0.5 < summary.distance_m < 2.0
+
+
+def test_same_seed_gives_the_same_trace_and_another_seed_another():
+    first, again, other = (walk("rough", seed=seed, time_limit=3.0) for seed in (4, 4, 5))
+    assert first.trace_hash == again.trace_hash
+    assert first.trace_hash != other.trace_hash
+
+
+def test_foothold_changed_by_a_picometre_gives_another_trace(monkeypatch):
+    plain = walk("flat", time_limit=1.0)
+    plan_on_request = plan_steps.plan_on_request
+
+    def nudged(request) -> FootstepPlan:
+        plan = plan_on_request(request)
+        first = plan.steps[0]
+        sole = first.T_world_sole
+        moved = dataclasses.replace(first, T_world_sole=Pose(sole.R, sole.p + (1e-12, 0.0, 0.0)))
+        return dataclasses.replace(plan, steps=(moved, *plan.steps[1:]))
+
+    monkeypatch.setattr(plan_steps, "plan_on_request", nudged)
+    assert walk("flat", time_limit=1.0).trace_hash != plain.trace_hash
+
+
+def test_recording_changes_nothing_and_the_summary_lies_beside_it(tmp_path):
+    plain = walk("rough", time_limit=2.0)
+    recorded = walk("rough", time_limit=2.0, record=tmp_path / "walk.rrd", out=tmp_path / "out")
+    assert recorded.trace_hash == plain.trace_hash
+    table = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert table["trace_hash"] == plain.trace_hash
+    assert table["outcome"] == "timeout"
+    lines = (tmp_path / "out" / "trace.jsonl").read_text().splitlines()
+    assert json.loads(lines[-1])["hash"] == plain.trace_hash
+
+
+def test_exception_in_a_skill_ends_the_run_as_an_error_that_names_the_node(monkeypatch):
+    def broken(request):
+        raise ZeroDivisionError("no ground to stand on")
+
+    monkeypatch.setattr(plan_steps, "plan_on_request", broken)
+    summary = walk("flat", time_limit=3.0)
+    assert summary.outcome is Outcome.ERROR
+    assert "plan_footsteps: ZeroDivisionError" in summary.reason
