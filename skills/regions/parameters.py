@@ -97,8 +97,8 @@ class MemoryParameters:
     )
     regions_max: int = parameter(150, unit="1", minimum=1, maximum=10000, meaning="the oldest beyond this are dropped")
     cell: float = parameter(0.025, unit="m", minimum=0.005, maximum=0.1, meaning="edge of the cells for comparing")
-    support_scale: float = parameter(
-        1.5, unit="1", minimum=1.0, maximum=3.0, meaning="assumed ground under an unseen sole, in soles"
+    start_support: float = parameter(
+        3.0, unit="1", minimum=1.0, maximum=5.0, meaning="assumed ground around the soles at the start, in soles"
     )
     sole_length: float = parameter(0.26, unit="m", minimum=0.05, maximum=1.0, meaning="length of a sole")
     sole_width: float = parameter(0.138, unit="m", minimum=0.02, maximum=1.0, meaning="width of a sole")

@@ -3,7 +3,8 @@
 The camera looks ahead, so the ground under and behind the feet is known only from earlier frames. Frames are kept when
 the camera has moved; the newest always counts. Regions are compared on a horizontal grid: an old one is dropped once
 it is old, far, covered by newer ones, or seen differently by the newest frame. Where a foot stands on ground that no
-frame has shown, the ground is assumed to go on a little around its sole.
+frame has shown there must be ground under the sole; where the robot starts, before it has moved, the ground is assumed
+to go on around the soles, because a first step must land between them and what the camera sees.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ class RegionMemory:
         self.parameters = parameters or MemoryParameters()
         self._kept: tuple[_Remembered, ...] = ()
         self._T_world_key: Pose | None = None
+        self._start: Stance | None = None
         self._dropped: tuple[tuple[str, int], ...] = ()
 
     @property
@@ -40,7 +42,7 @@ class RegionMemory:
 
     def reset(self) -> None:
         """Forget everything."""
-        self._kept, self._T_world_key, self._dropped = (), None, ()
+        self._kept, self._T_world_key, self._start, self._dropped = (), None, None, ()
 
     def update(self, regions: PlanarRegions, stance: Stance, image: DepthImage) -> PlanarRegions:
         """The ground as known now, oldest region first.
@@ -56,7 +58,7 @@ class RegionMemory:
         kept = self._remember(newest, regions.time, stance, image, is_key, reasons)
         known = tuple(remembered.region for remembered in (*kept, *newest))
         unseen = [side for side in Side if not self._stands_on(stance.sole(side), known)]
-        supports = tuple(self._support(stance.sole(side), regions.time) for side in unseen)
+        supports = tuple(self._support(side, stance, regions.time) for side in unseen)
         self._kept = kept
         if is_key:
             self._T_world_key, self._kept = image.T_world_camera, (*kept, *newest)
@@ -129,12 +131,15 @@ class RegionMemory:
                 found |= near & contains_points(region.hull_region, np.ascontiguousarray(points_region[:, :2]))
         return bool(found.all())
 
-    def _support(self, T_world_sole: Pose, time: float) -> PlanarRegion:
-        """Ground assumed under a sole."""
+    def _support(self, side: Side, stance: Stance, time: float) -> PlanarRegion:
+        """Ground assumed under a sole, and around it while the foot stands where it stood at the start."""
         p = self.parameters
-        half = 0.5 * p.support_scale * np.array((p.sole_length, p.sole_width))
+        if self._start is None:
+            self._start = stance
+        moved = np.linalg.norm(stance.sole(side).p - self._start.sole(side).p) > p.same_height
+        half = 0.5 * (1.0 if moved else p.start_support) * np.array((p.sole_length, p.sole_width))
         pad = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * half
-        return PlanarRegion(T_world_sole, pad, (pad,), float(4.0 * half[0] * half[1]), time)
+        return PlanarRegion(stance.sole(side), pad, (pad,), float(4.0 * half[0] * half[1]), time)
 
 
 class _Remembered(NamedTuple):

@@ -87,7 +87,8 @@ def test_ground_seen_differently_replaces_the_old():
     known = memory.update(frame(1.0, pad(0.6, 0.0, -0.05, time=1.0)), stance(0.0), blind(0.0))
     assert memory.dropped == (("changed", 1),)
     assert newest_height(known, 0.5, 0.0) == pytest.approx(-0.05)
-    assert np.isnan(newest_height(known, 0.35, 0.0))
+    # What is left there is the ground assumed around the feet, not the old region.
+    assert all(region.time == 1.0 for region in known.regions)
 
 
 def test_a_block_that_the_camera_now_sees_through_is_forgotten():
@@ -135,15 +136,19 @@ def test_frames_without_motion_replace_each_other():
     assert len(known.regions) <= 2 + 2
 
 
-def test_unseen_feet_stand_on_assumed_ground():
+def test_unseen_feet_stand_on_assumed_ground_that_goes_on_around_them_at_the_start():
     feet = Stance(Pose.from_xyz_rpy((0.0, 0.12, 0.3), (0.0, 0.2, 0.5)), Pose.from_xyz_rpy((0.0, -0.12, 0.25)))
-    known = RegionMemory().update(frame(0.0), feet, blind(0.0))
-    left, right = known.regions
+    memory, parameters = RegionMemory(), MemoryParameters()
+    left, right = memory.update(frame(0.0), feet, blind(0.0)).regions
     np.testing.assert_array_equal(left.T_world_region.p, feet.T_world_left.p)
     np.testing.assert_array_equal(left.normal_world, feet.T_world_left.R[:, 2])
-    parameters = MemoryParameters()
-    assert np.ptp(right.hull_region[:, 0]) == pytest.approx(1.5 * parameters.sole_length)
-    assert np.ptp(right.hull_region[:, 1]) == pytest.approx(1.5 * parameters.sole_width)
+    assert np.ptp(right.hull_region[:, 0]) == pytest.approx(parameters.start_support * parameters.sole_length)
+
+    moved = Stance(feet.T_world_left, Pose.from_xyz_rpy((0.4, -0.12, 0.25)))
+    left, right = memory.update(frame(1.0), moved, blind(0.0)).regions
+    assert np.ptp(left.hull_region[:, 0]) == pytest.approx(parameters.start_support * parameters.sole_length)
+    assert np.ptp(right.hull_region[:, 0]) == pytest.approx(parameters.sole_length)
+    assert np.ptp(right.hull_region[:, 1]) == pytest.approx(parameters.sole_width)
 
 
 def test_seen_feet_need_no_assumed_ground():
