@@ -9,11 +9,12 @@ from behaviors.leaf import Call, Leaf, SkillLeaf
 from behaviors.ports import Input, Output
 from behaviors.registry import leaf
 from skills.body_path import BodyPath, Goal, SubGoal, goal_reached, straight_path, sub_goal
+from skills.walking import WalkingPhase
 
 
 @leaf
 class WaitForGoal(Leaf):
-    """Waits until the operator sends a goal that is newer than the last one."""
+    """Waits until the operator sends a goal that is newer than the last one; a fallen robot takes none."""
 
     goal = Output(Goal, "where the robot is sent")
 
@@ -26,6 +27,11 @@ class WaitForGoal(Leaf):
         goals = [event.value for event in self.context.operator_events if event.name == "goal"]
         if not goals:
             return self.running("waits for a goal")
+        status = self.context.robot.status()
+        if status.phase is WalkingPhase.FALLEN:
+            # Else it would walk off by itself once it stands again.
+            self.log(f"goal refused: the robot has fallen: {status.failure}", level="warning")
+            return self.running("waits for a goal that comes when the robot is on its feet")
         self.goal = goals[-1]
         self.log(f"new goal: x {goals[-1].x:.2f} m, y {goals[-1].y:.2f} m, yaw {goals[-1].yaw:.2f} rad")
         return self.succeeded()

@@ -107,7 +107,7 @@ class PlanFootsteps(SkillLeaf):
             terrain=self.context.parameters["terrain"],
         )
         self._plans += 1
-        return self.call(plan_on_request, request)
+        return self.call(plan_on_request, request, deadline=self._deadline(status))
 
     def receive(self, result: FootstepPlan) -> Status:
         """Hand an executable plan on."""
@@ -115,6 +115,12 @@ class PlanFootsteps(SkillLeaf):
             return self.failed(result.reason)
         self.plan = result
         return self.succeeded(result.reason)
+
+    def _deadline(self, status: WalkingStatus) -> float | None:
+        """When the foot in the air lands: a later plan may find the robot waiting for it."""
+        if status.phase is not WalkingPhase.SWING:
+            return None
+        return self.context.time + status.phase_duration - status.phase_elapsed
 
     def _not_begun(self, status: WalkingStatus) -> FootstepPlan | None:
         """The last plan without the steps that have begun."""

@@ -21,8 +21,11 @@ class SendFootsteps(Leaf):
     def tick(self) -> Status:
         """SUCCESS once the steps are queued; steps that began while the plan was made are left out."""
         status = self.context.robot.status()
-        begun = -1 if status.current_step is None else status.current_step.sequence_id
+        if status.phase is WalkingPhase.FALLEN:
+            return self.failed(f"the robot has fallen: {status.failure}")
+        begun = status.last_sequence_id
         if status.current_step is not None and status.phase is WalkingPhase.TRANSFER:
+            # Its foot is still on the ground: a newer step may take its place.
             begun -= 1
         steps = tuple(step for step in self.plan.steps if step.sequence_id > begun)
         if not steps:
@@ -33,40 +36,45 @@ class SendFootsteps(Leaf):
 
 @parameters
 class SwingParameters:
-    """Which part of the swing to wait for."""
+    """Which part of the swing to wait for, and for how long in vain."""
 
     fraction: float = parameter(
         0.5, unit="1", meaning="share of the swing after which the next plan begins", minimum=0.0, maximum=1.0
+    )
+    patience: float = parameter(
+        1.5, unit="s", meaning="time that the robot may stand before the step begins", minimum=0.0, maximum=60.0
     )
 
 
 @leaf
 class WaitForSwing(Leaf):
-    """Waits until the first step of the plan is halfway through its swing, or has landed early."""
+    """Waits until a share of the swing of the plan's first step is over, or the step has landed early."""
 
     Parameters = SwingParameters
+    parameters: SwingParameters
     plan = Input(FootstepPlan, "the footsteps that were sent")
 
+    def start(self) -> None:
+        """Note when the steps were sent."""
+        self._sent_at = self.context.time
+
     def tick(self) -> Status:
-        """SUCCESS at the share of the swing; FAILURE where the robot stands instead."""
+        """SUCCESS at the share of the swing; FAILURE where the robot stands instead, or has fallen."""
         status = self.context.robot.status()
-        first = self.plan.steps[0].sequence_id
-        step = status.current_step
-        if step is None or status.phase is WalkingPhase.STANDING:
-            if self.context.time > self._sent_at + self._patience:
+        if status.phase is WalkingPhase.FALLEN:
+            return self.failed(f"the robot has fallen: {status.failure}")
+        first, step = self.plan.steps[0].sequence_id, status.current_step
+        if status.last_sequence_id > first or (status.last_sequence_id == first and step is None):
+            return self.succeeded("the step has landed")
+        if step is None:
+            if self.context.time > self._sent_at + self.parameters.patience:
                 return self.failed("the robot stands although steps were sent")
             return self.running("waits for the step to begin")
-        if step.sequence_id < first or (step.sequence_id == first and status.phase is WalkingPhase.TRANSFER):
+        if step.sequence_id < first or status.phase is WalkingPhase.TRANSFER:
             return self.running("waits for the swing to begin")
-        share = status.phase_elapsed / max(status.phase_duration, 1e-9)
-        if step.sequence_id == first and share < self.parameters.fraction:
-            return self.running("waits for half of the swing")
+        if status.phase_elapsed < self.parameters.fraction * status.phase_duration:
+            return self.running(f"waits for {100 * self.parameters.fraction:.0f} % of the swing")
         return self.succeeded()
-
-    def start(self) -> None:
-        """Note when the steps were sent, and how long the robot may take to begin."""
-        self._sent_at = self.context.time
-        self._patience = 2.0 * self.plan.steps[0].transfer_duration + 0.1
 
 
 @leaf

@@ -1,0 +1,92 @@
+"""Looking: each image counts once, and its regions join the map of the ground."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scripted_walk import PARAMETERS, WalkingRobot, feet_at, ground, status_and_reason, tick
+
+from behaviors import Status, Tree, parse_tree
+from behaviors.leaves import look
+from skills.geometry import DepthImage
+from skills.regions import PlanarRegions, RegionExtraction, RegionParameters
+
+LOOK = """
+tree: look
+root:
+  loop_forever:
+    sequence:
+      - ExtractRegions: {out: [extraction], latency: 0.04}
+      - RememberGround: {in: [extraction], out: [ground]}
+"""
+
+
+@pytest.fixture
+def looked_at(monkeypatch: pytest.MonkeyPatch) -> list[DepthImage]:
+    """The images that regions were extracted from; each shows one square metre of ground."""
+    images: list[DepthImage] = []
+
+    def examine(image: DepthImage, parameters: RegionParameters) -> RegionExtraction:
+        assert parameters is PARAMETERS["regions"]
+        images.append(image)
+        seen = PlanarRegions(ground(image.time).regions, image.time, image.frame_id)
+        return RegionExtraction(image, seen, np.zeros((1, 1), dtype=np.int32), 4, (0,), ())
+
+    monkeypatch.setattr(look, "examine_regions", examine)
+    return images
+
+
+@pytest.fixture
+def tree(looked_at):
+    tree = Tree(parse_tree(LOOK), WalkingRobot(), parameters=dict(PARAMETERS))
+    yield tree
+    tree.shutdown()
+
+
+def test_it_waits_for_the_first_image_with_a_reason(tree, looked_at):
+    assert status_and_reason(tree) == (Status.RUNNING, "waits for the first depth image")
+    assert not looked_at
+
+
+def test_each_image_is_used_once(tree, looked_at):
+    robot = tree.context.robot.robot
+    robot.frame_id = 0
+    tick(tree, 20)
+    assert [image.frame_id for image in looked_at] == [0]
+    assert tree.root.reason == "waits for the next depth image"
+    robot.frame_id = 3
+    tick(tree, 20)
+    assert [image.frame_id for image in looked_at] == [0, 3]
+
+
+def test_an_image_that_comes_while_another_is_examined_is_taken_next(tree, looked_at):
+    robot = tree.context.robot.robot
+    for frame_id in range(10):
+        robot.frame_id = frame_id
+        tick(tree)
+    assert [image.frame_id for image in looked_at] == sorted({image.frame_id for image in looked_at})
+    assert 1 < len(looked_at) < 10, "images that came meanwhile are passed over, but not the newest"
+
+
+def test_the_map_holds_what_was_seen_and_is_as_new_as_the_image(tree, looked_at):
+    tree.context.robot.robot.frame_id = 0
+    tick(tree, 5)
+    remembered = tree.blackboard["ground"]
+    assert isinstance(remembered, PlanarRegions)
+    assert remembered.frame_id == 0
+    assert remembered.time == looked_at[0].time
+    (seen,) = tree.blackboard["extraction"].regions.regions
+    assert any(region is seen for region in remembered.regions)
+
+
+def test_the_map_is_made_around_the_imminent_stance(tree, looked_at, monkeypatch):
+    stances = []
+    update = look.RegionMemory.update
+    monkeypatch.setattr(
+        look.RegionMemory, "update", lambda self, *given: stances.append(given[1]) or update(self, *given)
+    )
+    robot = tree.context.robot.robot
+    robot.stand(x=2.0)
+    robot.frame_id = 0
+    tick(tree, 5)
+    assert [stance.mid_feet.tolist() for stance in stances] == [feet_at(2.0).mid_feet.tolist()]
