@@ -10,7 +10,9 @@ from strict_yaml import Kind, YamlError, load_document
 
 NAME = "check"
 HELP = "check tree and course files and print every problem with file:line:column"
-EXAMPLE = "lookstep check trees/look_and_step.yaml my_course.yaml"
+EXAMPLE = "lookstep check look_and_step my_course.yaml"
+
+_COURSE_KEYS = {"generator", "objects", "start", "goal"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -39,7 +41,7 @@ def _check(name: str) -> str:
 
     path = tree_path(name)
     document = load_document(path)
-    if document.kind is Kind.MAPPING and document.get("tree") is None and document.get("start") is not None:
+    if document.kind is Kind.MAPPING and "tree" not in document.keys and _COURSE_KEYS.intersection(document.keys):
         load_course(str(path))
         return "course"
     problems = behaviors.check(path)

@@ -66,7 +66,7 @@ def print_summary(summary: Summary, options: RunOptions) -> None:
     if options.out is not None:
         console.print(f"[dim]summary  [/] {options.out / 'summary.json'}")
     if options.record is not None:
-        console.print(f"[dim]recording[/] {options.record}   (open it: rerun {options.record})")
+        console.print(f"[dim]recording[/] {options.record}   (open it: ./run rerun {options.record})")
 
 
 def _rows(summary: Summary) -> list[tuple[str, str]]:

@@ -6,6 +6,7 @@ import pytest
 
 from lookstep.__main__ import main
 from lookstep.commands import COMMANDS
+from strict_yaml import shipped
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda command: command.NAME)
@@ -59,9 +60,11 @@ def test_check_tells_every_problem_of_a_tree_with_its_place(tmp_path, capsys):
 
 
 def test_check_tells_a_course_from_a_tree(capsys):
-    assert main(["check", "look_and_step", "config/courses/stairs.yaml"]) == 0
-    assert "sound (tree)" in (text := capsys.readouterr().out)
-    assert "sound (course)" in text
+    courses = [str(shipped("config", "courses", f"{name}.yaml")) for name in ("stairs", "moved_blocks")]
+    assert main(["check", "look_and_step", *courses]) == 0
+    told = capsys.readouterr().out
+    assert told.count("sound (tree)") == 1
+    assert told.count("sound (course)") == 2
 
 
 def test_tree_is_drawn_with_every_leaf(capsys):

@@ -3,6 +3,7 @@
 import dataclasses
 import json
 
+import numpy as np
 import pytest
 
 import lookstep
@@ -32,9 +33,9 @@ def test_robot_reaches_the_goal_without_a_pause(course, seed):
 
 def test_robot_stops_honestly_where_the_ground_ends(tmp_path):
     course = tmp_path / "pier.yaml"
-    course.write_text(
-        "start: {x: 0, y: 0}\ngoal: {x: 4, y: 0}\nobjects:\n  - {size: [3.0, 1.2, 0.2], position: [0.5, 0, -0.1]}\n  - {size: [1.0, 1.2, 0.2], position: [4.0, 0, -0.1]}\n"
-    )
+    pads = ((3.0, 0.5), (1.0, 4.0))
+    objects = "".join(f"  - {{size: [{length}, 1.2, 0.2], position: [{x}, 0, -0.1]}}\n" for length, x in pads)
+    course.write_text(f"start: {{x: 0, y: 0}}\ngoal: {{x: 4, y: 0}}\nobjects:\n{objects}")
     summary = walk(str(course), time_limit=25.0)
     assert summary.outcome is Outcome.TIMEOUT
     assert 0.5 < summary.distance_m < 2.0
@@ -54,11 +55,19 @@ def test_foothold_changed_by_a_picometre_gives_another_trace(monkeypatch):
         plan = plan_on_request(request)
         first = plan.steps[0]
         sole = first.T_world_sole
-        moved = dataclasses.replace(first, T_world_sole=Pose(sole.R, sole.p + (1e-12, 0.0, 0.0)))
+        nudge = np.array((1e-12, 0.0, 0.0))
+        moved = dataclasses.replace(first, T_world_sole=Pose(sole.R, sole.p + nudge))
         return dataclasses.replace(plan, steps=(moved, *plan.steps[1:]))
 
     monkeypatch.setattr(plan_steps, "plan_on_request", nudged)
     assert walk("flat", time_limit=1.0).trace_hash != plain.trace_hash
+
+
+def test_realtime_executor_walks_too():
+    summary = walk("flat", time_limit=3.0, executor="realtime", speed=2.0)
+    assert summary.outcome is Outcome.TIMEOUT, summary.reason
+    assert summary.steps.total >= 1
+    assert summary.wall_s >= 1.4
 
 
 def test_recording_changes_nothing_and_the_summary_lies_beside_it(tmp_path):
