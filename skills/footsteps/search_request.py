@@ -1,0 +1,97 @@
+"""A request for footsteps as the search takes it: terrain, stance, sub-goal and parameters as plain arrays."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skills.footsteps.footstep import FootstepPlan, Side, Stance
+from skills.footsteps.footstep_lattice import FootstepLattice
+from skills.footsteps.footstep_parameters import FootstepParameters
+from skills.footsteps.level_steps import most_level_steps
+from skills.footsteps.search_space import GROUND, NODE, SEARCH_GOAL, STAND, STEP_LIMITS, SearchSpace
+from skills.footsteps.step_cost import REASONS
+from skills.footsteps.terrain import Terrain, foothold_rules, pack, slopes
+from skills.geometry.pose import Array
+
+if TYPE_CHECKING:
+    from skills.body_path.sub_goal import SubGoal
+
+_SAME_PLACE = 0.03
+
+
+def search_space(
+    terrain: Terrain,
+    lattice: FootstepLattice,
+    stance: Stance,
+    first_side: Side,
+    goal: SubGoal,
+    reference: FootstepPlan | None,
+    parameters: FootstepParameters,
+) -> SearchSpace:
+    """Fresh memory for a search whose first step `first_side` makes; `reference` is the plan before."""
+    corner = terrain.corner_world
+    headings = lattice.shape[0]
+    snap_limits, samples = foothold_rules(parameters)
+    return SearchSpace(
+        cells=terrain.cells,
+        planes=terrain.planes,
+        resolution=terrain.resolution,
+        snap_limits=snap_limits,
+        samples=samples,
+        limits=_step_limits(parameters),
+        goal=np.array([(goal.search_arc_length, goal.final)], dtype=SEARCH_GOAL),
+        path=goal.searched_world - (*corner, 0.0, 0.0),
+        reference=_reference_places(reference, stance, first_side, parameters.reference_steps) - corner,
+        feet=np.array([_foot(stance, side, corner) for side in (first_side.opposite, first_side)]),
+        lattice=lattice.record(),
+        headings=lattice.headings(stance.sole(first_side).yaw),
+        nodes=np.zeros(2 * lattice.stances + 1, dtype=NODE),
+        grounds=np.zeros(lattice.stances, dtype=GROUND),
+        steps=np.empty((2 * headings, most_level_steps(parameters), 3), dtype=np.int64),
+        step_counts=np.zeros(2 * headings, dtype=np.int64),
+        stand=np.zeros(1, dtype=STAND),
+        snapped=np.zeros(4),
+        rejections=np.zeros(len(REASONS), dtype=np.int64),
+    )
+
+
+def _foot(stance: Stance, side: Side, corner: Array) -> tuple[float, ...]:
+    sole = stance.sole(side)
+    x, y = sole.p[:2] - corner
+    return (x, y, sole.p[2], sole.yaw, *slopes(sole), side.sign)
+
+
+def _reference_places(reference: FootstepPlan | None, stance: Stance, first_side: Side, count: int) -> Array:
+    """Places of the first `count` steps in the plan before, (count, 2); NaN where it has none.
+
+    They are the steps after the one that lands where the stance foot stands, or, where none does, its first steps.
+    """
+    places = np.full((count, 2), np.nan)
+    steps = () if reference is None else reference.steps
+    stance_xy = stance.sole(first_side.opposite).p[:2]
+    for i, step in enumerate(steps):
+        if step.side is not first_side and np.linalg.norm(step.T_world_sole.p[:2] - stance_xy) < _SAME_PLACE:
+            steps = steps[i + 1 :]
+            break
+    if steps and steps[0].side is first_side:
+        known = np.array([step.T_world_sole.p[:2] for step in steps[:count]])
+        places[: len(known)] = known
+    return places
+
+
+def _step_limits(parameters: FootstepParameters) -> NDArray[np.void]:
+    """Limits, costs and settings, as the search takes them: one `STEP_LIMITS`."""
+    turn = max(parameters.inward_yaw, parameters.outward_yaw)
+    derived = {
+        "half_length": 0.5 * parameters.sole_length,
+        "half_width": 0.5 * parameters.sole_width,
+        "uphill_tangent": np.tan(parameters.uphill_slope),
+        # The body beside a foot moves on by the reach, and a little more where the foot turns.
+        "stride": parameters.reach + 0.5 * parameters.ideal_width * turn,
+        "turn": turn,
+        "heading": 2 * np.pi / parameters.headings,
+    }
+    return pack(STEP_LIMITS, parameters, derived)

@@ -1,0 +1,102 @@
+"""The memory that a footstep search works on: its limits, its goal, its lattice, and what it learns on the way.
+
+Kernels take it whole, as one named tuple over plain and structured arrays that is made anew for every search.
+"""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skills.geometry.pose import Array
+
+Records: TypeAlias = Any  # structured arrays, or one element of them
+
+# Fields are named after the parameters; the half sizes, uphill_tangent, heading (angle
+# between two), stride and turn (the most of a step) come from them.
+STEP_LIMITS = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            *("half_length", "half_width", "reach", "reach_up", "reach_up_height", "reach_down", "reach_down_height"),
+            *("back_reach", "minimum_width", "ideal_width", "maximum_width", "sole_gap", "height_change"),
+            *("inward_yaw", "outward_yaw", "uphill_drop", "uphill_tangent", "swing_reach", "swing_height_change"),
+            *("step_cost", "height_cost", "tilt_cost", "yaw_cost", "width_cost", "path_cost", "share_cost"),
+            *("reference_cost", "lattice", "heading", "stride", "turn", "heuristic_weight", "minimum_steps"),
+            *("along_tolerance", "across_tolerance", "heading_tolerance", "goal_tolerance", "goal_yaw_tolerance"),
+        )
+    ]
+)
+SEARCH_GOAL = np.dtype([("arc_length", np.float64), ("final", np.bool_)])
+# Numbers of headings, rows and columns, those of the stance foot, and how many nodes one side has.
+LATTICE = np.dtype([(name, np.int64) for name in ("headings", "ny", "nx", "heading", "iy", "ix", "stances")])
+# A foot on the lattice: cost of the way there, estimated cost to go, what being off the path costs, and the way back.
+NODE = np.dtype(
+    [
+        *((name, np.float64) for name in ("cost", "to_go", "off_path_cost")),
+        *((name, np.int64) for name in ("parent", "depth")),
+        *((name, np.uint8) for name in ("status", "arrived")),
+    ]
+)
+UNKNOWN, JUDGED, OPEN, CLOSED = range(4)
+# What the ground is under a foot of either side: outcome of the snap, height, slopes, supported share.
+GROUND = np.dtype([*((name, np.float64) for name in ("z", "a", "b", "share")), ("outcome", np.uint8)])
+# What a step from a stance foot depends on.
+STAND = np.dtype(
+    [
+        *((name, np.float64) for name in ("x", "y", "z", "cos", "sin", "uphill", "cost")),
+        *((name, np.float64) for name in ("swing_x", "swing_y", "swing_z")),
+        ("depth", np.int64),
+    ]
+)
+
+
+class SearchSpace(NamedTuple):
+    """What a search works on; x and y are measured from the corner of the raster [m].
+
+    A node is ((side * headings + heading) * ny + iy) * nx + ix; side 0 is left, and the node past the last is the
+    swing foot where it is now. In this order a search, which uses few headings, touches little memory.
+
+    Attributes:
+        cells: raster of plane indices, (rows, columns).
+        planes: its planes, (P, 3).
+        resolution: its cell size [m].
+        snap_limits: one `SNAP_LIMITS`.
+        samples: where a sole feels the ground, (N, 2).
+        limits: one `STEP_LIMITS`.
+        goal: one `SEARCH_GOAL`.
+        path: (N, 4) rows of x, y, heading, arc length.
+        reference: (K, 2) places of the first steps in the plan before, NaN where there is none.
+        feet: (2, 7) stance foot, then swing foot: x, y, z, heading, slopes a and b, side (+1 left).
+        lattice: one `LATTICE`.
+        headings: (H + 1, 3) rows of angle, its cosine and sine: those of the lattice, then the swing foot's.
+        nodes: one `NODE` a node, zero.
+        grounds: one `GROUND` a node of one side, zero.
+        steps: (2 H, M, 3) steps on level ground by side and heading of the stance foot, see `fill_level_steps`.
+        step_counts: how many of them are known, (2 H,), zero.
+        stand: one `STAND`, that of the stance foot at hand.
+        snapped: (4,) what the last snap found.
+        rejections: counts by reason, added to.
+    """
+
+    cells: NDArray[np.int32]
+    planes: Array
+    resolution: float
+    snap_limits: Records
+    samples: Array
+    limits: Records
+    goal: Records
+    path: Array
+    reference: Array
+    feet: Array
+    lattice: Records
+    headings: Array
+    nodes: Records
+    grounds: Records
+    steps: NDArray[np.int64]
+    step_counts: NDArray[np.int64]
+    stand: Records
+    snapped: Array
+    rejections: NDArray[np.int64]
