@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,21 +15,19 @@ class BodyPath:
 
     Attributes:
         waypoints_world: (N >= 2, 3) rows of x, y [m] and heading yaw [rad].
+        arc_lengths: distance from the start along the path to each waypoint, (N,) [m]; made from the waypoints.
     """
 
     waypoints_world: Array
+    arc_lengths: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         waypoints = readonly(self.waypoints_world, (None, 3))
         if len(waypoints) < 2:
             raise ValueError(f"got {len(waypoints)} waypoints, a body path needs at least 2")
+        lengths = np.linalg.norm(np.diff(waypoints[:, :2], axis=0), axis=1)
         object.__setattr__(self, "waypoints_world", waypoints)
-
-    @property
-    def arc_lengths(self) -> Array:
-        """Distance from the start along the path to each waypoint, (N,) [m]."""
-        lengths = np.linalg.norm(np.diff(self.waypoints_world[:, :2], axis=0), axis=1)
-        return np.concatenate(([0.0], np.cumsum(lengths)))
+        object.__setattr__(self, "arc_lengths", readonly(np.concatenate(([0.0], np.cumsum(lengths)))))
 
     @property
     def length(self) -> float:
