@@ -40,8 +40,8 @@ class FootstepParameters:
 
     tilt: float = parameter(radians(25.0), unit="rad", meaning="steepest foothold", minimum=0.0, maximum=1.0)
     share: float = parameter(0.97, unit="1", meaning="smallest supported share of the sole", minimum=0.1, maximum=1.0)
-    support_below: float = parameter(0.015, unit="m", meaning="ground this far below the sole supports it", minimum=0.0)
-    ground_above: float = parameter(0.015, unit="m", meaning="highest ground above the sole, under it", minimum=0.0)
+    support_below: float = parameter(0.008, unit="m", meaning="ground this far below the sole supports it", minimum=0.0)
+    ground_above: float = parameter(0.008, unit="m", meaning="highest ground above the sole, under it", minimum=0.0)
     sole_edge: float = parameter(0.01, unit="m", meaning="ground so near counts as under it", minimum=0.0, maximum=0.1)
     cliff_height: float = parameter(0.05, unit="m", meaning="highest ground above the sole, beside it", minimum=0.0)
     cliff_toe: float = parameter(0.04, unit="m", meaning="distance before the toe without a cliff", minimum=0.0)
@@ -49,7 +49,7 @@ class FootstepParameters:
 
     step_cost: float = parameter(0.15, unit="1", meaning="cost of a step", minimum=0.01)
     height_cost: float = parameter(0.5, unit="1/m", meaning="cost of a rise or drop", minimum=0.0)
-    tilt_cost: float = parameter(0.1, unit="1", meaning="cost of a foothold's slope, times its tangent", minimum=0.0)
+    tilt_cost: float = parameter(0.05, unit="1", meaning="cost of a foothold's slope, times its tangent", minimum=0.0)
     yaw_cost: float = parameter(0.29, unit="1/rad", meaning="cost of a heading off the path's", minimum=0.0)
     width_cost: float = parameter(0.2, unit="1/m", meaning="cost of a width off the ideal", minimum=0.0)
     path_cost: float = parameter(0.2, unit="1/m", meaning="cost of a step off the path", minimum=0.0)

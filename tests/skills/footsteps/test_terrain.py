@@ -68,7 +68,7 @@ def test_sole_lies_in_a_tilted_plane():
 
 
 def test_level_neighbours_carry_one_sole_together_across_their_seam():
-    blocks = [rectangle((0.19 * s, 0.0, 0.005 * s), size=(0.36, 0.5)) for s in (-1, 1)]
+    blocks = [rectangle((0.19 * s, 0.0, 0.003 * s), size=(0.36, 0.5)) for s in (-1, 1)]
     for x in np.linspace(-0.1, 0.1, 9):
         found = terrain(*blocks).snap(float(x), 0.0, 0.0, PARAMETERS)
         assert found.usable, (x, found.reason)
@@ -91,7 +91,7 @@ def test_ground_that_sticks_through_the_sole_is_refused():
     assert terrain(floor, rectangle((0.11, 0.05, 0.03), size=(0.03, 0.03))).snap(0, 0, 0, PARAMETERS).reason == (
         "ground above the sole"
     )
-    assert terrain(floor, rectangle((0.11, 0.05, 0.01), size=(0.03, 0.03))).snap(0, 0, 0, PARAMETERS).usable
+    assert terrain(floor, rectangle((0.11, 0.05, 0.005), size=(0.03, 0.03))).snap(0, 0, 0, PARAMETERS).usable
 
 
 def test_cliff_is_felt_before_the_toe_and_beside_the_sole():
