@@ -28,10 +28,11 @@ from skills.regions import PlanarRegions, RegionExtraction, debug_image
 from skills.walking import StepEventKind
 
 _APPLICATION = "lookstep"
-# Links are drawn and images kept at these periods; everything else when it changes [s].
+# Links are drawn, images and maps of the ground kept at these periods; everything else when it changes [s].
 _LINK_PERIOD = 0.05
-_IMAGE_PERIOD = 0.5
+_VALUE_PERIODS: dict[type, float] = {RegionExtraction: 1.0, PlanarRegions: 0.5}
 _FLUSH_PERIOD = 2.0
+_PICTURE_WIDTH = 640
 _SUB_GOAL_RADIUS = 0.05
 _STATES = {
     Status.RUNNING: "running",
@@ -68,7 +69,8 @@ class Recording:
         self._seen: dict[str, Any] = {}
         self._reasons: dict[str, str] = {}
         self._box_poses: dict[str, Any] = {}
-        self._next_links = self._next_image = self._next_flush = 0.0
+        self._next_links = self._next_flush = 0.0
+        self._next_value: dict[str, float] = {}
         self._log_static(about)
         self._links = self._log_links(world)
         self._lanes = self._log_lanes(tree.nodes)
@@ -78,8 +80,9 @@ class Recording:
         self._stream.set_time(TIMELINE, duration=moment.time)
         self._log_motion(moment)
         for key, value in moment.tree.blackboard.values().items():
-            if self._seen.get(key) is not value:
+            if self._seen.get(key) is not value and moment.time >= self._next_value.get(key, 0.0):
                 self._seen[key] = value
+                self._next_value[key] = moment.time + _VALUE_PERIODS.get(type(value), 0.0)
                 self._log_value(key, value, moment)
         self._log_tree(moment)
         self._log_timing(moment)
@@ -144,7 +147,7 @@ class Recording:
                 log(f"world/{key}/outlines", scene.region_outlines(value))
                 log(f"world/{key}/surfaces", scene.region_surfaces(value))
             case RegionExtraction():
-                self._log_images(value, moment)
+                self._log_images(value)
             case FootstepPlan():
                 log(f"world/{key}/steps", scene.planned_soles(value.steps, self._sole))
                 log(f"world/{key}/swings", scene.swing_ways(value.steps, moment.status.imminent_stance))
@@ -158,12 +161,10 @@ class Recording:
             case _:
                 pass
 
-    def _log_images(self, extraction: RegionExtraction, moment: Moment) -> None:
-        if moment.time < self._next_image:
-            return
-        self._next_image = moment.time + _IMAGE_PERIOD
+    def _log_images(self, extraction: RegionExtraction) -> None:
         self._stream.log("camera/depth", encoded_depth(extraction.image))
-        self._stream.log("camera/regions", encoded_picture(debug_image(extraction)))
+        stride = 2 if extraction.image.camera.width > _PICTURE_WIDTH and extraction.cell_size % 2 == 0 else 1
+        self._stream.log("camera/regions", encoded_picture(debug_image(extraction, stride)))
         camera, T_world_camera = extraction.image.camera, extraction.image.T_world_camera
         pinhole = rr.Pinhole(
             focal_length=(camera.fx, camera.fy),

@@ -38,23 +38,24 @@ def robot_meshes(model: mujoco.MjModel) -> Iterator[tuple[int, rr.Mesh3D]]:
 
 def _merged(model: mujoco.MjModel, mesh: GeomMesh, members: np.ndarray) -> rr.Mesh3D:
     """Some geoms of one body as one mesh with flat shading."""
-    corners, normals, colors = [], [], []
+    triangles, colors = [], []
     for i in members:
         geom = int(mesh.geom_ids[i])
         T_body_geom = Pose.from_quaternion_wxyz(model.geom_quat[geom], model.geom_pos[geom])
-        vertices_body = T_body_geom @ mesh.vertices_geom
-        for face in mesh.faces[mesh.face_start[i] : mesh.face_start[i + 1]]:
-            triangles = [vertices_body[face[[0, 1, 2]]]]
-            if face[3] != face[2]:
-                triangles.append(vertices_body[face[[0, 2, 3]]])
-            for triangle in triangles:
-                normal = np.cross(triangle[1] - triangle[0], triangle[2] - triangle[0])
-                corners.append(triangle)
-                normals.append(np.tile(normal / max(float(np.linalg.norm(normal)), 1e-12), (3, 1)))
-                colors.append(np.tile(np.round(255 * geom_rgba(model, geom)).astype(np.uint8), (3, 1)))
+        first = mesh.vertex_start[i]
+        vertices_body = T_body_geom @ mesh.vertices_geom[first : mesh.vertex_start[i + 1]]
+        faces = mesh.faces[mesh.face_start[i] : mesh.face_start[i + 1]] - first
+        quads = faces[faces[:, 3] != faces[:, 2]]
+        corners = vertices_body[np.concatenate((faces[:, [0, 1, 2]], quads[:, [0, 2, 3]]))]
+        triangles.append(corners)
+        color = np.round(255 * geom_rgba(model, geom)).astype(np.uint8)
+        colors.append(np.tile(color, (3 * len(corners), 1)))
+    corners = np.concatenate(triangles)
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     return rr.Mesh3D(
-        vertex_positions=np.concatenate(corners).astype(np.float32),
-        vertex_normals=np.concatenate(normals).astype(np.float32),
+        vertex_positions=corners.reshape(-1, 3).astype(np.float32),
+        vertex_normals=np.repeat(normals, 3, axis=0).astype(np.float32),
         vertex_colors=np.concatenate(colors),
     )
 
@@ -66,23 +67,20 @@ def region_outlines(regions: PlanarRegions) -> rr.LineStrips3D:
 
 
 def region_surfaces(regions: PlanarRegions) -> rr.Mesh3D | rr.Clear:
-    """The convex parts of every region as one mesh."""
-    corners, colors = [np.zeros((0, 3))], []
+    """The convex parts of every region as one mesh in the regions' colours."""
+    corners, colors = [], []
     for region in regions.regions:
-        for part in region.convex_parts_region:
-            fan = _fan(_lifted(region.T_world_region, part, _REGION_LIFT))
-            corners.append(fan)
-            colors.extend([_color(region, 255)] * len(fan))
-    if not colors:
+        fans = np.concatenate([_fan(part) for part in region.convex_parts_region])
+        corners.append(_lifted(region.T_world_region, fans, _REGION_LIFT))
+        colors.append(np.tile(np.array(_color(region), dtype=np.uint8), (len(fans), 1)))
+    if not corners:
         return rr.Clear(recursive=False)
-    return rr.Mesh3D(
-        vertex_positions=np.concatenate(corners).astype(np.float32), vertex_colors=np.array(colors, dtype=np.uint8)
-    )
+    return rr.Mesh3D(vertex_positions=np.concatenate(corners).astype(np.float32), vertex_colors=np.concatenate(colors))
 
 
-def _color(region: PlanarRegion, alpha: int) -> palette.RGBA:
+def _color(region: PlanarRegion) -> palette.RGBA:
     center = region.hull_world.mean(axis=0)
-    return (*palette.region_color((float(center[0]), float(center[1]))), alpha)
+    return (*palette.region_color((float(center[0]), float(center[1]))), 255)
 
 
 def planned_soles(steps: Sequence[Footstep], sole: Array) -> rr.Mesh3D:
@@ -138,11 +136,10 @@ def _closed(points: Array) -> Array:
     return np.vstack((points, points[:1]))
 
 
-def _fan(polygon_world: Array) -> Array:
-    """A convex polygon as the corners of its triangle fan, (3 (N - 2), 3)."""
-    n = len(polygon_world)
-    indices = np.array([(0, i, i + 1) for i in range(1, n - 1)]).reshape(-1)
-    return polygon_world[indices]
+def _fan(polygon: Array) -> Array:
+    """A convex polygon (N, d) as the corners of its triangle fan, (3 (N - 2), d)."""
+    inner = np.arange(1, len(polygon) - 1)
+    return polygon[np.column_stack((np.zeros_like(inner), inner, inner + 1)).ravel()]
 
 
 def course_boxes(course: Course, poses: Mapping[str, BoxPose]) -> rr.Boxes3D:
