@@ -29,7 +29,7 @@ def debug_image(extraction: RegionExtraction, stride: int = 1) -> NDArray[np.uin
     """
     depth, cell = extraction.image.depth[::stride, ::stride], extraction.cell_size // stride
     grey = (30.0 + 60.0 * _nearness(depth)).astype(np.uint8)
-    picture = cv2.cvtColor(grey, cv2.COLOR_GRAY2RGB)
+    picture = np.repeat(grey[..., None], 3, axis=2)
     found = sorted(set(extraction.region_labels))
     # Cells are coloured before they are spread over their pixels, which are many more.
     colours = np.zeros((int(extraction.labels.max(initial=0)) + 2, 3), dtype=np.uint8)
@@ -63,5 +63,5 @@ def _colours(count: int) -> NDArray[np.uint8]:
     """Colours of equal brightness whose hues are far apart from one to the next, (count, 3)."""
     hue = (np.arange(count) * 0.5 * (5.0**0.5 - 1.0)) % 1.0 * 179.0
     hsv = np.column_stack((hue, np.full(count, 150.0), np.full(count, 240.0))).astype(np.uint8)
-    rgb = cv2.cvtColor(hsv[None], cv2.COLOR_HSV2RGB)[0] if count else np.zeros((0, 3))
-    return np.asarray(rgb, dtype=np.uint8)
+    rgb = cv2.cvtColor(hsv[None], cv2.COLOR_HSV2RGB)[0] if count else hsv
+    return rgb.astype(np.uint8)
