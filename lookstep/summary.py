@@ -74,7 +74,7 @@ class Summary:
         first_step_after_s: robot time from the goal to the first lift-off; None where no step was made.
         plan, regions: compute times of footstep planning and of region extraction.
         min_support_fraction: smallest share of a stance sole's area within 1 cm of true ground at mid-stance.
-        view_fraction: share of plans whose first three footholds lie on regions of the newest depth image.
+        view_fraction: share of plans whose footholds all lie on regions of the newest depth image.
         foothold_error_m: median distance of a landed sole's centre from its commanded foothold.
         versions, trace_hash: what it takes to get the same run again, and what proves it.
     """

@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from behaviors import Executor, ExecutorMode, OperatorEvent, SettingError, Trace, Tree, TreeSpec, load_tree
 from behaviors import Outcome as TreeOutcome
 from lookstep.configuration import Assignments, Configuration, load_configuration, split_assignments
@@ -62,7 +64,8 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
         recording = Recording(options.record, world, tree, configuration.robot, _about(options), options.seed)
         watching.append(recording)
     try:
-        ending = _loop(world, tree, watching, options, Goal(*(options.goal or course.goal)))
+        goal = Goal(*(options.goal or course.goal))
+        ending = _loop(world, tree, watching, options, goal, configuration.judge.goal_distance)
     finally:
         tree.shutdown()
         if recording is not None:
@@ -80,11 +83,17 @@ class _Ending:
     wall_s: float
 
 
-def _loop(world: KinematicWorld, tree: Tree, watching: list[Observer], options: RunOptions, goal: Goal) -> _Ending:
+def _loop(
+    world: KinematicWorld,
+    tree: Tree,
+    watching: list[Observer],
+    options: RunOptions,
+    goal: Goal,
+    goal_distance: float,
+) -> _Ending:
     pace = _Pace(_speed(options))
-    outcome, reason = None, ""
     tree.send(OperatorEvent("goal", goal))
-    while outcome is None:
+    while True:
         world.advance(tree.next_tick_time - world.time)
         pace.wait_until(world.time)
         tree.tick()
@@ -102,6 +111,12 @@ def _loop(world: KinematicWorld, tree: Tree, watching: list[Observer], options: 
         for observer in watching:
             observer.observe(moment)
         outcome, reason = _ending(moment, options.time_limit)
+        if outcome is not None:
+            break
+    if outcome is Outcome.GOAL_REACHED:
+        rest = float(np.hypot(*(moment.state.stance.mid_feet[:2] - (goal.x, goal.y))))
+        if rest > goal_distance:
+            outcome, reason = Outcome.STOPPED, f"the tree has succeeded {rest:.2f} m from the goal"
     return _Ending(outcome, reason, pace.elapsed)
 
 

@@ -32,3 +32,6 @@ class JudgeParameters:
     pause_ratio: float = parameter(
         1.5, unit="1", minimum=1.0, maximum=10.0, meaning="double support over nominal transfer that is a pause"
     )
+    goal_distance: float = parameter(
+        0.25, unit="m", minimum=0.01, maximum=5.0, meaning="a run that ends this near to its goal has reached it"
+    )

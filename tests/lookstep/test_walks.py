@@ -41,6 +41,14 @@ def test_robot_stops_honestly_where_the_ground_ends(tmp_path):
     assert 0.5 < summary.distance_m < 2.0
 
 
+def test_tree_that_succeeds_elsewhere_has_not_reached_the_goal(tmp_path):
+    tree = tmp_path / "lazy.yaml"
+    tree.write_text("tree: lazy\nroot: Succeed\n")
+    summary = walk("flat", tree=str(tree))
+    assert summary.outcome is Outcome.STOPPED
+    assert summary.reason == "the tree has succeeded 8.00 m from the goal"
+
+
 def test_same_seed_gives_the_same_trace_and_another_seed_another():
     first, again, other = (walk("rough", seed=seed, time_limit=3.0) for seed in (4, 4, 5))
     assert first.trace_hash == again.trace_hash
