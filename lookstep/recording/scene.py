@@ -21,8 +21,10 @@ from skills.regions import PlanarRegion, PlanarRegions
 BoxPose = tuple[tuple[float, ...], tuple[float, ...]]
 
 # Regions float above the blocks and footprints above the regions, or they would flicker through each other.
-_REGION_LIFT = 0.005
-_STEP_LIFT = 0.012
+# Of two regions the later in the map is the newer; it lies on top.
+_REGION_LIFT = 0.004
+_NEWER_LIFT = 0.0001
+_STEP_LIFT = 0.02
 _ROUND_SEGMENTS = 24
 
 
@@ -62,16 +64,19 @@ def _merged(model: mujoco.MjModel, mesh: GeomMesh, members: np.ndarray) -> rr.Me
 
 def region_outlines(regions: PlanarRegions) -> rr.LineStrips3D:
     """Outline of every region in its colour."""
-    strips = [_closed(_lifted(region.T_world_region, region.hull_region, _REGION_LIFT)) for region in regions.regions]
+    strips = [
+        _closed(_lifted(region.T_world_region, region.hull_region, _REGION_LIFT + _NEWER_LIFT * i))
+        for i, region in enumerate(regions.regions)
+    ]
     return rr.LineStrips3D(strips, colors=[palette.REGION_EDGE] * len(strips), radii=0.004)
 
 
 def region_surfaces(regions: PlanarRegions) -> rr.Mesh3D | rr.Clear:
     """The convex parts of every region as one mesh in the regions' colours."""
     corners, colors = [], []
-    for region in regions.regions:
+    for i, region in enumerate(regions.regions):
         fans = np.concatenate([_fan(part) for part in region.convex_parts_region])
-        corners.append(_lifted(region.T_world_region, fans, _REGION_LIFT))
+        corners.append(_lifted(region.T_world_region, fans, _REGION_LIFT + _NEWER_LIFT * i))
         colors.append(np.tile(np.array(_color(region), dtype=np.uint8), (len(fans), 1)))
     if not corners:
         return rr.Clear(recursive=False)
