@@ -93,31 +93,36 @@ def _loop(
 ) -> _Ending:
     pace = _Pace(_speed(options))
     tree.send(OperatorEvent("goal", goal))
-    while True:
-        world.advance(tree.next_tick_time - world.time)
-        pace.wait_until(world.time)
-        tree.tick()
-        moment = Moment(
-            time=world.time,
-            world=world,
-            tree=tree,
-            state=world.true_state(),
-            status=world.status(),
-            events=tree.context.events,
-            samples=world.drain_log(),
-            jobs=tree.drain_jobs(),
-            log=tree.drain_log(),
-        )
-        for observer in watching:
-            observer.observe(moment)
-        outcome, reason = _ending(moment, options.time_limit)
-        if outcome is not None:
-            break
-    if outcome is Outcome.GOAL_REACHED:
-        rest = float(np.hypot(*(moment.state.stance.mid_feet[:2] - (goal.x, goal.y))))
-        if rest > goal_distance:
-            outcome, reason = Outcome.STOPPED, f"the tree has succeeded {rest:.2f} m from the goal"
+    outcome, reason = None, ""
+    try:
+        while outcome is None:
+            world.advance(tree.next_tick_time - world.time)
+            pace.wait_until(world.time)
+            tree.tick()
+            moment = _moment(world, tree)
+            for observer in watching:
+                observer.observe(moment)
+            outcome, reason = _ending(moment, options.time_limit)
+    except KeyboardInterrupt:
+        return _Ending(Outcome.STOPPED, "stopped by the operator", pace.elapsed)
+    rest = float(np.hypot(*(world.true_state().stance.mid_feet[:2] - (goal.x, goal.y))))
+    if outcome is Outcome.GOAL_REACHED and rest > goal_distance:
+        outcome, reason = Outcome.STOPPED, f"the tree has succeeded {rest:.2f} m from the goal"
     return _Ending(outcome, reason, pace.elapsed)
+
+
+def _moment(world: KinematicWorld, tree: Tree) -> Moment:
+    return Moment(
+        time=world.time,
+        world=world,
+        tree=tree,
+        state=world.true_state(),
+        status=world.status(),
+        events=tree.context.events,
+        samples=world.drain_log(),
+        jobs=tree.drain_jobs(),
+        log=tree.drain_log(),
+    )
 
 
 def _ending(moment: Moment, time_limit: float) -> tuple[Outcome | None, str]:

@@ -8,7 +8,9 @@ import pytest
 
 import lookstep
 from behaviors.leaves import plan_steps
+from lookstep.options import RunOptions
 from lookstep.summary import Outcome, Summary
+from lookstep.walk import walk as run_walk
 from skills.footsteps import FootstepPlan
 from skills.geometry import Pose
 
@@ -87,6 +89,18 @@ def test_recording_changes_nothing_and_the_summary_lies_beside_it(tmp_path):
     assert table["outcome"] == "timeout"
     lines = (tmp_path / "out" / "trace.jsonl").read_text().splitlines()
     assert json.loads(lines[-1])["hash"] == plain.trace_hash
+
+
+def test_operator_who_interrupts_still_gets_the_figures(tmp_path):
+    class Impatient:
+        def observe(self, moment) -> None:
+            if moment.time >= 0.5:
+                raise KeyboardInterrupt
+
+    summary = run_walk(RunOptions(course="flat", assignments=SMALL_CAMERA, out=tmp_path), Impatient())
+    assert summary.outcome is Outcome.STOPPED
+    assert summary.reason == "stopped by the operator"
+    assert json.loads((tmp_path / "summary.json").read_text())["duration_s"] >= 0.5
 
 
 def test_exception_in_a_skill_ends_the_run_as_an_error_that_names_the_node(monkeypatch):
