@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,12 +10,11 @@ import numpy as np
 from behaviors import JobRecord
 from lookstep.configuration import Configuration
 from lookstep.moment import Moment
-from lookstep.summary import PauseCounts, SkillTiming
+from lookstep.summary import Figures, PauseCounts, SkillTiming
 from sim_envs.courses import Ground
 from sim_envs.judge import (
     BoxMoved,
     PhaseSample,
-    StepCounts,
     StepJudgement,
     TrueStep,
     count_steps,
@@ -34,23 +32,6 @@ from skills.walking import StepEvent, StepEventKind, WalkingPhase
 _VIEW_SHARE = 0.8
 _VIEW_DISTANCE = 0.03
 _FRAMES_KEPT = 30
-
-
-@dataclass(frozen=True, slots=True)
-class Figures:
-    """The measured part of a summary; see `Summary`."""
-
-    duration_s: float
-    distance_m: float
-    speed_mps: float
-    steps: StepCounts
-    pauses: PauseCounts
-    first_step_after_s: float | None
-    plan: SkillTiming
-    regions: SkillTiming
-    min_support_fraction: float | None
-    view_fraction: float | None
-    foothold_error_m: float | None
 
 
 class Statistics:

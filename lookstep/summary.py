@@ -61,14 +61,12 @@ class SkillTiming:
         )
 
 
-@dataclass(frozen=True, slots=True)
-class Summary:
-    """The figures of one run.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Figures:
+    """What was measured in a run.
 
     Attributes:
-        outcome, reason: how it ended, and why in one sentence.
-        course, tree, world, executor, preset, seed: what ran.
-        duration_s: robot time from the first to the last tick; wall_s: wall time for it, without set-up.
+        duration_s: robot time from the first to the last tick.
         distance_m: straight way of the true mid-feet from first to last; speed_mps: distance over duration.
         steps: by the paper's definitions (section Results), judged on the truth; pauses likewise.
         first_step_after_s: robot time from the goal to the first lift-off; None where no step was made.
@@ -76,19 +74,9 @@ class Summary:
         min_support_fraction: smallest share of a stance sole's area within 1 cm of true ground at mid-stance.
         view_fraction: share of plans whose footholds all lie on regions of the newest depth image.
         foothold_error_m: median distance of a landed sole's centre from its commanded foothold.
-        versions, trace_hash: what it takes to get the same run again, and what proves it.
     """
 
-    outcome: Outcome
-    reason: str
-    course: str
-    tree: str
-    world: str
-    executor: str
-    preset: str | None
-    seed: int
     duration_s: float
-    wall_s: float
     distance_m: float
     speed_mps: float
     steps: StepCounts
@@ -99,6 +87,29 @@ class Summary:
     min_support_fraction: float | None
     view_fraction: float | None
     foothold_error_m: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Summary(Figures):
+    """The figures of one run, and what it takes to get the same run again.
+
+    Attributes:
+        outcome, reason: how it ended, and why in one sentence.
+        course, tree, world, executor, preset, seed: what ran.
+        wall_s: wall time of the run, without set-up.
+        versions: of the packages that can change a figure.
+        trace_hash: equal if and only if two runs were the same to the bit.
+    """
+
+    outcome: Outcome
+    reason: str
+    course: str
+    tree: str
+    world: str
+    executor: str
+    preset: str | None
+    seed: int
+    wall_s: float
     versions: dict[str, str]
     trace_hash: str
 
@@ -108,10 +119,11 @@ class Summary:
         return self.duration_s / self.wall_s if self.wall_s > 0 else math.inf
 
     def to_json(self) -> str:
-        """The summary as JSON text, keys in the order of the class."""
+        """The summary as JSON text; how it ended and what ran come before the figures."""
         table = dataclasses.asdict(self)
+        measured = {field.name: table.pop(field.name) for field in dataclasses.fields(Figures)}
         table["outcome"] = self.outcome.value
-        return json.dumps(table, indent=2, allow_nan=False) + "\n"
+        return json.dumps({**table, **measured}, indent=2, allow_nan=False) + "\n"
 
     def write(self, path: Path) -> None:
         """Write the JSON in one go, so that nobody ever reads half a file."""

@@ -23,6 +23,7 @@ from lookstep.statistics import Statistics
 from lookstep.summary import Outcome, Summary, installed_versions
 from lookstep.trees import tree_path
 from lookstep.warm_up import warm_up
+from lookstep.world import build_world
 from sim_envs.courses import Course, CourseError, load_course
 from sim_envs.worlds import KinematicWorld
 from skills.body_path import Goal
@@ -47,7 +48,7 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
     configuration = load_configuration(options.preset, assignments.subjects)
     spec = load_tree(tree_path(options.tree))
     course = _course(options, assignments.course)
-    world = _world(course, configuration, options.seed)
+    world = build_world(course, configuration, options.seed)
     tree = _tree(spec, world, configuration, assignments, options)
     # From here on the input is known to be good.
     for folder in filter(None, (options.out, options.record and options.record.parent)):
@@ -199,19 +200,6 @@ def _tree(
     except (SettingError, ParameterError) as error:
         executor.shutdown()
         raise UserError(f"--set: {error}") from error
-
-
-def _world(course: Course, configuration: Configuration, seed: int) -> KinematicWorld:
-    return KinematicWorld(
-        course,
-        seed=seed,
-        parameters=configuration.world,
-        robot=configuration.robot,
-        walking=configuration.walking,
-        camera=configuration.camera,
-        noise=configuration.noise,
-        falls=configuration.falls,
-    )
 
 
 def _about(options: RunOptions) -> str:

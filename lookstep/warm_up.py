@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from lookstep.configuration import Configuration
+from lookstep.world import build_world
 from sim_envs.courses import load_course
-from sim_envs.worlds import KinematicWorld
 from skills.body_path import straight_path, sub_goal
 from skills.footsteps import plan_from_stance, terrain_ahead
 from skills.regions import RegionMemory, examine_regions
@@ -19,15 +19,7 @@ from skills.regions import RegionMemory, examine_regions
 def warm_up(configuration: Configuration) -> None:
     """Run each kernel once with the types that a walk uses."""
     course = load_course("flat")
-    world = KinematicWorld(
-        course,
-        parameters=configuration.world,
-        robot=configuration.robot,
-        walking=configuration.walking,
-        camera=configuration.camera,
-        noise=configuration.noise,
-        falls=configuration.falls,
-    )
+    world = build_world(course, configuration)
     image = world.depth_image()
     assert image is not None, "the world takes its first frame when it is made"
     stance = world.status().imminent_stance
