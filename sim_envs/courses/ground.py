@@ -47,10 +47,6 @@ class Ground:
         """Height of the highest surface at points (N, 2), (N,); -inf over the pit [m]."""
         return self.surface(points_xy)[0]
 
-    def surface_normal(self, points_xy: Array) -> Array:
-        """Unit normal of the highest surface at points (N, 2), (N, 3); zero over the pit."""
-        return self.surface(points_xy)[1]
-
     def surface(self, points_xy: Array) -> tuple[Array, Array, NDArray[np.int64]]:
         """The highest surface at points (N, 2): height (N,), unit normal (N, 3), index of its box (N,).
 

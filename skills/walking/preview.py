@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from skills.footsteps.footstep import Footstep, Side, Stance
-from skills.geometry.pose import Array, Pose, wrap_angle
+from skills.geometry.pose import Array, Pose
 from skills.walking.heel_lift import HeelLift, pitched_about_toe
 from skills.walking.swing_trajectory import SwingTrajectory
 from skills.walking.walking_parameters import WalkingParameters
@@ -168,11 +168,6 @@ def phases_of_steps(
 def cop_in_sole(T_world_sole: Pose, side: Side, forward: float, parameters: WalkingParameters) -> Array:
     """The planned CoP in one foot from above, (2,) in the world [m]."""
     return (T_world_sole @ np.array([forward, -side.sign * parameters.cop_inward, 0.0]))[:2]
-
-
-def yaw_towards(start: float, end: float, share: float) -> float:
-    """A heading part of the shorter way from one to another [rad]."""
-    return wrap_angle(start + share * wrap_angle(end - start))
 
 
 def _ground_after_transfer(old: float, new: float, parameters: WalkingParameters) -> float:

@@ -11,8 +11,6 @@ from skills.parameters import parameter, parameters
 class WalkingParameters:
     """Settings of the walking controller; swing and transfer times come with each footstep."""
 
-    swing_duration: float = parameter(1.2, unit="s", meaning="time in the air of steps made here", minimum=0.3)
-    transfer_duration: float = parameter(0.8, unit="s", meaning="double support of steps made here", minimum=0.05)
     first_transfer: float = parameter(0.7, unit="s", meaning="shortest double support before a first step", minimum=0.1)
     final_transfer: float = parameter(
         0.8, unit="s", meaning="double support from the last step to standing", minimum=0.1
