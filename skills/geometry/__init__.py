@@ -1,14 +1,19 @@
-"""Rigid transforms, polygons and cameras."""
+"""Rigid transforms, polygons, and what cameras and lidars deliver."""
 
 from skills.geometry.camera import DepthImage, PinholeCamera
+from skills.geometry.capsule import Capsule
+from skills.geometry.lidar import LidarScan, SpinningLidar
 from skills.geometry.polygon import clip_convex, contains_points, convex_hull, convex_parts, signed_area, simplify
 from skills.geometry.pose import Array, Pose, readonly, wrap_angle
 
 __all__ = [
     "Array",
+    "Capsule",
     "DepthImage",
+    "LidarScan",
     "PinholeCamera",
     "Pose",
+    "SpinningLidar",
     "clip_convex",
     "contains_points",
     "convex_hull",

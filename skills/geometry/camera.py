@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from skills.geometry.capsule import Capsule
 from skills.geometry.pose import Pose
 
 
@@ -52,6 +53,7 @@ class DepthImage:
         T_world_camera: estimated camera pose when the frame was taken.
         time: robot time of the frame [s].
         frame_id: counts frames from 0.
+        body_world: parts of the robot that the camera may see, where they were believed to be.
     """
 
     depth: NDArray[np.float32]
@@ -59,6 +61,7 @@ class DepthImage:
     T_world_camera: Pose
     time: float
     frame_id: int
+    body_world: tuple[Capsule, ...] = ()
 
     def __post_init__(self) -> None:
         expected = (self.camera.height, self.camera.width)

@@ -24,20 +24,6 @@ from skills.regions.refinement import refine_regions
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Capsule:
-    """A part of the robot's own body that the camera may see.
-
-    Attributes:
-        start_world, end_world: ends of its axis, (3,) [m].
-        radius: distance from the axis within which pixels are ignored [m].
-    """
-
-    start_world: Array
-    end_world: Array
-    radius: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class RejectedRegion:
     """A flat piece of the image that is no ground.
 
@@ -82,36 +68,25 @@ class RegionExtraction:
 DEFAULT_PARAMETERS = RegionParameters()
 
 
-def extract_regions(
-    image: DepthImage, parameters: RegionParameters = DEFAULT_PARAMETERS, body: tuple[Capsule, ...] = ()
-) -> PlanarRegions:
+def extract_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PARAMETERS) -> PlanarRegions:
     """Planar regions of ground in the world, from one depth image.
 
     Args:
-        image: the depth image with the camera's pose.
+        image: the depth image with the camera's pose and the robot's own body.
         parameters: tolerances and limits.
-        body: parts of the robot that must not become ground.
     """
-    return examine_regions(image, parameters, body).regions
+    return examine_regions(image, parameters).regions
 
 
-def examine_regions(
-    image: DepthImage, parameters: RegionParameters = DEFAULT_PARAMETERS, body: tuple[Capsule, ...] = ()
-) -> RegionExtraction:
+def examine_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PARAMETERS) -> RegionExtraction:
     """The same as `extract_regions`, with labels and with what was rejected and why."""
-    patches = fit_patches(image, parameters, _capsules_in_camera(body, image.T_world_camera))
+    patches = fit_patches(image, parameters)
     coarse = grow_regions(patches, parameters)
     fine, bend = refine_regions(image, patches, coarse, parameters)
     cell_size = patches.size // 2
     regions, region_labels, rejected = _regions_of(image, fine, bend, cell_size, parameters)
     found = PlanarRegions(regions, image.time, image.frame_id)
     return RegionExtraction(image, found, fine.labels, cell_size, region_labels, rejected)
-
-
-def _capsules_in_camera(body: tuple[Capsule, ...], T_world_camera: Pose) -> Array:
-    T_camera_world = T_world_camera.inverse
-    rows = [(*(T_camera_world @ c.start_world), *(T_camera_world @ c.end_world), c.radius) for c in body]
-    return np.array(rows, dtype=np.float64).reshape(-1, 7)
 
 
 def _regions_of(

@@ -40,14 +40,8 @@ class Patches:
     sigma: Array
 
 
-def fit_patches(image: DepthImage, parameters: RegionParameters, body_camera: Array) -> Patches:
-    """Fit a plane to every patch of a depth image.
-
-    Args:
-        image: the depth image.
-        parameters: patch size and tolerances.
-        body_camera: capsules whose inside is ignored, (K, 7): two ends in the camera frame and a radius [m].
-    """
+def fit_patches(image: DepthImage, parameters: RegionParameters) -> Patches:
+    """Fit a plane to every patch of a depth image; patches on the robot's own body get none."""
     camera = image.camera
     size = patch_size(camera, parameters)
     rows, columns = camera.height // size, camera.width // size
@@ -55,10 +49,17 @@ def fit_patches(image: DepthImage, parameters: RegionParameters, body_camera: Ar
     planes = np.full((rows, columns, 3), np.nan)
     sigma = np.full((rows, columns), np.inf)
     _sum_patches(image.depth, intrinsics(camera), camera.near, min(camera.far, parameters.depth_max), size, sums)
-    if len(body_camera):
-        _drop_body(sums, body_camera)
+    if image.body_world:
+        _drop_body(sums, _capsules_in_camera(image))
     _fit_windows(sums, parameters.patch_sigma_max, parameters.grow_offset, planes, sigma)
     return Patches(size, sums, planes, sigma)
+
+
+def _capsules_in_camera(image: DepthImage) -> Array:
+    """The robot's body as rows of two ends in the camera frame and a radius, (K, 7) [m]."""
+    T_camera_world = image.T_world_camera.inverse
+    rows = [(*(T_camera_world @ c.start_world), *(T_camera_world @ c.end_world), c.radius) for c in image.body_world]
+    return np.array(rows)
 
 
 def patch_size(camera: PinholeCamera, parameters: RegionParameters) -> int:

@@ -19,7 +19,7 @@ from skills.geometry.camera import DepthImage
 from skills.geometry.polygon import contains_points
 from skills.geometry.pose import Pose
 from skills.regions.height_grid import Cells, Comparison, HeightGrid, cells_of
-from skills.regions.parameters import MemoryParameters
+from skills.regions.memory_parameters import MemoryParameters
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 
 EXPIRED, FAR, COVERED, CHANGED, VANISHED, TOO_MANY = "expired", "far", "covered", "changed", "vanished", "too many"

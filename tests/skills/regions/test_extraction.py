@@ -1,4 +1,5 @@
 import os
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -9,9 +10,10 @@ from block_fields import L515, Box, View, block, camera_pose, look, random_view,
 from region_quality import Quality, judge
 
 from skills.geometry.camera import DepthImage, PinholeCamera
+from skills.geometry.capsule import Capsule
 from skills.geometry.polygon import contains_points, signed_area
 from skills.geometry.pose import Pose
-from skills.regions import Capsule, PlanarRegions, RegionParameters, debug_image, examine_regions, extract_regions
+from skills.regions import PlanarRegions, RegionParameters, debug_image, examine_regions, extract_regions
 
 HELD_OUT = (101, 102, 103)  # never used to choose a parameter
 SMALL = L515.scaled(0.3125)  # 320 x 240
@@ -166,7 +168,7 @@ def test_capsules_of_the_body_leave_no_ground():
     image = with_noise(ground(L515, 1.05, foot).image, 0)
     body = (Capsule(np.array((0.62, 0.0, 0.05)), np.array((0.88, 0.0, 0.05)), 0.1),)
     assert any(height > 0.05 for height in region_at(extract_regions(image), 0.75, 0.0))
-    assert not any(height > 0.05 for height in region_at(extract_regions(image, body=body), 0.75, 0.0))
+    assert not any(height > 0.05 for height in region_at(extract_regions(replace(image, body_world=body)), 0.75, 0.0))
 
 
 def test_a_barrel_is_no_ground():

@@ -1,0 +1,25 @@
+"""Capsules: the shape in which sensors are told where the robot's own body is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from skills.geometry.pose import Array, readonly
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Capsule:
+    """All points within a distance of a line segment.
+
+    Attributes:
+        start_world, end_world: ends of its axis, (3,) [m].
+        radius: distance from the axis [m].
+    """
+
+    start_world: Array
+    end_world: Array
+    radius: float
+
+    def __post_init__(self) -> None:
+        for name in ("start_world", "end_world"):
+            object.__setattr__(self, name, readonly(getattr(self, name), (3,)))
