@@ -163,7 +163,7 @@ class Recording:
 
     def _log_images(self, extraction: RegionExtraction) -> None:
         self._stream.log("camera/depth", encoded_depth(extraction.image))
-        stride = 2 if extraction.image.camera.width > _PICTURE_WIDTH and extraction.cell_size % 2 == 0 else 1
+        stride = 2 if extraction.image.camera.width > _PICTURE_WIDTH else 1
         self._stream.log("camera/regions", encoded_picture(debug_image(extraction, stride)))
         camera, T_world_camera = extraction.image.camera, extraction.image.T_world_camera
         pinhole = rr.Pinhole(

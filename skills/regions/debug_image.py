@@ -1,7 +1,7 @@
 """The debug image of an extraction: what became of every pixel.
 
 Each region has a colour, what was rejected is hatched in grey, what belongs to no plane is dark and shaded by depth,
-pixels without depth are black; lines show the patch grid.
+pixels without depth are black.
 """
 
 from __future__ import annotations
@@ -14,7 +14,6 @@ from skills.regions.extraction import RegionExtraction
 
 _HATCH = 8  # distance of the hatching's lines [px]
 _NOTHING, _FOUND, _REJECTED = 0, 1, 2
-_GRID = 0.85  # brightness of the patch grid's lines
 
 
 def debug_image(extraction: RegionExtraction, stride: int = 1) -> NDArray[np.uint8]:
@@ -22,29 +21,23 @@ def debug_image(extraction: RegionExtraction, stride: int = 1) -> NDArray[np.uin
 
     Args:
         extraction: what was found.
-        stride: draws every nth pixel of every nth row; divides the cell size.
+        stride: draws every nth pixel of every nth row.
 
     Returns:
         Picture, (ceil(height / stride), ceil(width / stride), 3).
     """
-    depth, cell = extraction.image.depth[::stride, ::stride], extraction.cell_size // stride
+    depth, labels = extraction.image.depth[::stride, ::stride], extraction.labels[::stride, ::stride]
     grey = (30.0 + 60.0 * _nearness(depth)).astype(np.uint8)
     picture = np.repeat(grey[..., None], 3, axis=2)
     found = sorted(set(extraction.region_labels))
-    # Cells are coloured before they are spread over their pixels, which are many more.
-    colours = np.zeros((int(extraction.labels.max(initial=0)) + 2, 3), dtype=np.uint8)
+    colours = np.zeros((int(labels.max(initial=0)) + 2, 3), dtype=np.uint8)
     colours[found] = _colours(len(found))
     kinds = np.full(len(colours), _REJECTED, dtype=np.uint8)
     kinds[found], kinds[-1] = _FOUND, _NOTHING
-    size = (extraction.labels.shape[1] * cell, extraction.labels.shape[0] * cell)
-    painted = cv2.resize(colours[extraction.labels], size, interpolation=cv2.INTER_NEAREST)
-    kind = cv2.resize(kinds[extraction.labels], size, interpolation=cv2.INTER_NEAREST)
-    drawn = picture[: size[1], : size[0]]
-    v, u = np.indices(kind.shape, sparse=True)
-    cv2.copyTo(painted, (kind == _FOUND).astype(np.uint8), drawn)
-    drawn[(kind == _REJECTED) & ((u + v) % _HATCH < 2)] = 150
-    for lines in (drawn[:: 2 * cell], drawn[:, :: 2 * cell]):
-        lines[:] = (_GRID * lines).astype(np.uint8)
+    kind = kinds[labels]
+    v, u = np.ogrid[: kind.shape[0], : kind.shape[1]]
+    cv2.copyTo(colours[labels], (kind == _FOUND).astype(np.uint8), picture)
+    picture[(kind == _REJECTED) & ((u + v) % _HATCH < 2)] = 150
     picture[depth == 0.0] = 0
     for rejected in extraction.rejected:
         outline = np.round(rejected.outline_image / stride).astype(np.int32).reshape(-1, 1, 2)

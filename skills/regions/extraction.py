@@ -10,15 +10,17 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from skills.geometry.camera import DepthImage
 from skills.geometry.polygon import convex_parts, signed_area, simplify
 from skills.geometry.pose import Array, Pose, readonly
-from skills.regions.growing import Labels, Segmentation, grow_regions
+from skills.regions.growing import Labels, grow_regions
 from skills.regions.outline import trace_outlines
 from skills.regions.parameters import RegionParameters
-from skills.regions.patches import fit_patches
+from skills.regions.patches import fit_patches, patch_size
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 from skills.regions.refinement import refine_regions
 
@@ -48,16 +50,14 @@ class RegionExtraction:
     Attributes:
         image: what was looked at.
         regions: the result.
-        labels: flat piece of each cell of the image, (rows, columns) int32; -1 for none.
-        cell_size: edge of a cell [px].
+        labels: flat piece of each pixel, (height, width) int16; -1 for none.
         region_labels: the label behind each region.
         rejected: flat pieces that became no region.
     """
 
     image: DepthImage
     regions: PlanarRegions
-    labels: Labels
-    cell_size: int
+    labels: NDArray[np.int16]
     region_labels: tuple[int, ...]
     rejected: tuple[RejectedRegion, ...]
 
@@ -83,21 +83,40 @@ def examine_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PA
     patches = fit_patches(image, parameters)
     coarse = grow_regions(patches, parameters)
     fine, bend = refine_regions(image, patches, coarse, parameters)
-    cell_size = patches.size // 2
-    regions, region_labels, rejected = _regions_of(image, fine, bend, cell_size, parameters)
+    labels = _spread(fine.labels, patches.size // 2, image.depth.shape)
+    regions, region_labels, rejected = _regions_of(image, labels, fine.planes, fine.sigma, bend, parameters)
     found = PlanarRegions(regions, image.time, image.frame_id)
-    return RegionExtraction(image, found, fine.labels, cell_size, region_labels, rejected)
+    return RegionExtraction(image, found, labels, region_labels, rejected)
+
+
+def _spread(cell_labels: Labels, size: int, shape: tuple[int, ...]) -> NDArray[np.int16]:
+    """The labels of cells as labels of their pixels; pixels that fill no cell have none."""
+    labels = np.full(shape, -1, dtype=np.int16)
+    rows, columns = cell_labels.shape
+    if cell_labels.size:
+        pixels = cv2.resize(
+            cell_labels.astype(np.int16), (columns * size, rows * size), interpolation=cv2.INTER_NEAREST
+        )
+        labels[: rows * size, : columns * size] = pixels
+    return labels
 
 
 def _regions_of(
-    image: DepthImage, fine: Segmentation, bend: Array, cell_size: int, parameters: RegionParameters
+    image: DepthImage,
+    labels: NDArray[np.int16],
+    planes: Array,
+    sigma: Array,
+    bend: Array,
+    parameters: RegionParameters,
 ) -> tuple[tuple[PlanarRegion, ...], tuple[int, ...], tuple[RejectedRegion, ...]]:
-    """Turn labelled cells into polygons in the world and sort out what is no ground."""
+    """Turn labelled pixels into polygons in the world and sort out what is no ground."""
     regions: list[PlanarRegion] = []
     region_labels: list[int] = []
     rejected: list[RejectedRegion] = []
-    R_world_regions = _frames(fine.planes, image.T_world_camera)
-    outlines = _back_project(trace_outlines(fine.labels), image, fine.planes, R_world_regions, cell_size)
+    R_world_regions = _frames(planes, image.T_world_camera)
+    outlines = _back_project(
+        trace_outlines(labels), image, planes, R_world_regions, patch_size(image.camera, parameters)
+    )
     holes = [outline for outline in outlines if outline.area < -parameters.hole_area_min]
     for outline in outlines:
         if outline.area <= 0.0:
@@ -119,7 +138,7 @@ def _regions_of(
         parts = convex_parts(hull, parameters.convex_tolerance, cut_out)
         area = float(signed_area(hull)) + sum(float(signed_area(hole)) for hole in cut_out)
         T_world_region = Pose(R, R @ np.array((x, y, z)))
-        regions.append(PlanarRegion(T_world_region, hull, parts, area, image.time, cut_out, float(fine.sigma[label])))
+        regions.append(PlanarRegion(T_world_region, hull, parts, area, image.time, cut_out, float(sigma[label])))
         region_labels.append(label)
     return tuple(regions), tuple(region_labels), tuple(rejected)
 
@@ -142,9 +161,9 @@ class _Outline:
 
 
 def _back_project(
-    loops: list[tuple[int, Array]], image: DepthImage, planes: Array, R_world_regions: Array, cell_size: int
+    loops: list[tuple[int, Array]], image: DepthImage, planes: Array, R_world_regions: Array, patch: int
 ) -> list[_Outline]:
-    """Outlines on their planes, all in one go; loops around single cells are left out."""
+    """Outlines on their planes, all in one go; loops around single pixels are left out."""
     loops = [(label, loop) for label, loop in loops if len(loop) > 4]
     if not loops:
         return []
@@ -153,7 +172,7 @@ def _back_project(
     ends = np.cumsum(sizes)
     starts = ends - sizes
     labels = np.repeat([label for label, _ in loops], sizes)
-    uv = np.concatenate([loop for _, loop in loops]) * cell_size - 0.5
+    uv = np.concatenate([loop for _, loop in loops]) - 0.5
     rays = np.column_stack(((uv - (camera.cx, camera.cy)) / (camera.fx, camera.fy), np.ones(len(uv))))
     depth = 1.0 / np.maximum(np.einsum("ni,ni->n", rays, planes[labels]), 1.0 / camera.far)
     points = np.einsum("ni,nij->nj", image.T_world_camera @ (rays * depth[:, None]), R_world_regions[labels])
@@ -162,7 +181,7 @@ def _back_project(
     turns = points[:, 0] * points[following, 1] - points[following, 0] * points[:, 1]
     areas = 0.5 * np.add.reduceat(turns, starts)
     pixels = -0.5 * np.add.reduceat(uv[:, 0] * uv[following, 1] - uv[following, 0] * uv[:, 1], starts)
-    patches = pixels / (2 * cell_size) ** 2
+    patches = pixels / patch**2
     depths = np.add.reduceat(depth, starts) / sizes
     heights = np.add.reduceat(points[:, 2], starts) / sizes
     return [

@@ -1,8 +1,8 @@
-"""Outlines of labelled cells, by following the cracks between cells.
+"""Outlines of labelled pixels, by following the cracks between pixels.
 
-A crack is the side of a cell that parts it from another label. Followed with the region on its left, cracks close to
+A crack is the side of a pixel that parts it from another label. Followed with the region on its left, cracks close to
 loops: counter-clockwise around a piece of the region, clockwise around a hole, as seen in a frame with y up. Their
-midpoints are the outline, which halves the staircase of the cell grid.
+midpoints are the outline, which halves the staircase of the pixel grid.
 """
 
 from __future__ import annotations
@@ -12,17 +12,18 @@ from numpy.typing import NDArray
 
 from skills.geometry.pose import Array
 from skills.kernels import kernel
-from skills.regions.growing import Labels
+
+Labels = NDArray[np.int16]
 
 
 def trace_outlines(labels: Labels) -> list[tuple[int, Array]]:
     """All loops of all regions.
 
     Args:
-        labels: region of each cell, (rows, columns); -1 for none.
+        labels: region of each pixel, (height, width) int16; -1 for none.
 
     Returns:
-        (region, loop) pairs; a loop is (N, 2), (column, row) where integers are corners of cells.
+        (region, loop) pairs; a loop is (N, 2), (column, row) where integers are corners of pixels.
     """
     points, ends, owners = _trace(labels)
     starts = [0, *ends.tolist()]
@@ -54,7 +55,7 @@ def _trace(labels: Labels) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]
                 points[written, 0] = j + 0.5 + 0.5 * ((side == 0) - (side == 2))
                 points[written, 1] = i + 0.5 + 0.5 * ((side == 1) - (side == 3))
                 written += 1
-                # Next crack along the loop: around the same cell's corner, straight on, or around a concave corner.
+                # Next crack along the loop: around the same pixel's corner, straight on, or around a concave corner.
                 turn = (side + 3) % 4
                 if _open(labels, i, j, turn):
                     side = turn
@@ -71,7 +72,7 @@ def _trace(labels: Labels) -> tuple[Array, NDArray[np.int64], NDArray[np.int64]]
 
 @kernel
 def _open(labels: Labels, row: int, column: int, side: int) -> bool:
-    """Whether the side of a cell (0 right, 1 below, 2 left, 3 above) is a crack."""
+    """Whether the side of a pixel (0 right, 1 below, 2 left, 3 above) is a crack."""
     i, j = row + (side == 1) - (side == 3), column + (side == 0) - (side == 2)
     if i < 0 or j < 0 or i >= labels.shape[0] or j >= labels.shape[1]:
         return True

@@ -199,8 +199,7 @@ def test_debug_image_shows_regions_and_rejections_at_full_size():
     picture = debug_image(extraction)
     assert picture.shape == (768, 1024, 3) and picture.dtype == np.uint8
     saturation = picture.max(axis=2).astype(int) - picture.min(axis=2)
-    labels = np.kron(extraction.labels, np.ones((extraction.cell_size,) * 2, int))
-    accepted = np.isin(labels, extraction.region_labels)
+    accepted = np.isin(extraction.labels, extraction.region_labels)
     assert np.mean(saturation[accepted & (view.image.depth > 0)] > 60) > 0.95
     assert np.all(saturation[~accepted] == 0)
 
@@ -230,7 +229,7 @@ def test_real_images_give_planes_that_their_points_lie_in(name, scale, camera):
     areas = [region.area for region in extraction.regions.regions]
     assert len(areas) >= 3 and max(areas) > 0.2
     for label, region in zip(extraction.region_labels, extraction.regions.regions, strict=True):
-        v, u = np.nonzero(np.kron(extraction.labels == label, np.ones((extraction.cell_size,) * 2)))
+        v, u = np.nonzero(extraction.labels == label)
         z = depth[v, u].astype(np.float64)
         points = np.column_stack(((u - camera.cx) / camera.fx * z, (v - camera.cy) / camera.fy * z, z))[z > 0.0]
         T_region_camera = region.T_world_region.inverse @ image.T_world_camera
