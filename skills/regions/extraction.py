@@ -10,14 +10,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.camera import DepthImage
 from skills.geometry.polygon import convex_parts, signed_area, simplify
 from skills.geometry.pose import Array, Pose, readonly
-from skills.regions.growing import Labels, grow_regions
+from skills.regions.growing import grow_regions
 from skills.regions.outline import trace_outlines
 from skills.regions.parameters import RegionParameters
 from skills.regions.patches import fit_patches, patch_size
@@ -82,23 +81,10 @@ def examine_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PA
     """The same as `extract_regions`, with labels and with what was rejected and why."""
     patches = fit_patches(image, parameters)
     coarse = grow_regions(patches, parameters)
-    fine, bend = refine_regions(image, patches, coarse, parameters)
-    labels = _spread(fine.labels, patches.size // 2, image.depth.shape)
-    regions, region_labels, rejected = _regions_of(image, labels, fine.planes, fine.sigma, bend, parameters)
+    fine = refine_regions(image, patches, coarse, parameters)
+    regions, region_labels, rejected = _regions_of(image, fine.labels, fine.planes, fine.sigma, fine.bend, parameters)
     found = PlanarRegions(regions, image.time, image.frame_id)
-    return RegionExtraction(image, found, labels, region_labels, rejected)
-
-
-def _spread(cell_labels: Labels, size: int, shape: tuple[int, ...]) -> NDArray[np.int16]:
-    """The labels of cells as labels of their pixels; pixels that fill no cell have none."""
-    labels = np.full(shape, -1, dtype=np.int16)
-    rows, columns = cell_labels.shape
-    if cell_labels.size:
-        pixels = cv2.resize(
-            cell_labels.astype(np.int16), (columns * size, rows * size), interpolation=cv2.INTER_NEAREST
-        )
-        labels[: rows * size, : columns * size] = pixels
-    return labels
+    return RegionExtraction(image, found, fine.labels, region_labels, rejected)
 
 
 def _regions_of(

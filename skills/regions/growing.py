@@ -22,7 +22,7 @@ Labels = NDArray[np.int32]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Segmentation:
+class PatchRegions:
     """Which patch belongs to which plane.
 
     Attributes:
@@ -36,7 +36,7 @@ class Segmentation:
     sigma: Array
 
 
-def grow_regions(patches: Patches, parameters: RegionParameters) -> Segmentation:
+def grow_regions(patches: Patches, parameters: RegionParameters) -> PatchRegions:
     """Join patches into regions."""
     rows, columns = patches.sigma.shape
     labels = np.full((rows, columns), -1, dtype=np.int32)
@@ -53,7 +53,7 @@ def grow_regions(patches: Patches, parameters: RegionParameters) -> Segmentation
     roots, renumbered = np.unique(parents, return_inverse=True)
     lookup = np.append(renumbered, -1).astype(np.int32)
     sigma = np.array([fit_plane(sums[root], planes[root]) for root in roots])
-    return Segmentation(lookup[labels], planes[roots], sigma)
+    return PatchRegions(lookup[labels], planes[roots], sigma)
 
 
 @kernel
