@@ -30,11 +30,13 @@ class RejectedRegion:
 
     Attributes:
         label: its label.
-        reason: why, as a short phrase for the operator.
+        cause: why, in a word or two, the same for all that were rejected alike.
+        reason: why, with the figure and its limit, for the operator.
         outline_image: its outline, (N, 2) [px].
     """
 
     label: int
+    cause: str
     reason: str
     outline_image: Array
 
@@ -52,6 +54,7 @@ class RegionExtraction:
         labels: flat piece of each pixel, (height, width) int16; -1 for none.
         region_labels: the label behind each region.
         rejected: flat pieces that became no region.
+        parameters: the tolerances and limits that were used.
     """
 
     image: DepthImage
@@ -59,6 +62,7 @@ class RegionExtraction:
     labels: NDArray[np.int16]
     region_labels: tuple[int, ...]
     rejected: tuple[RejectedRegion, ...]
+    parameters: RegionParameters
 
     def __post_init__(self) -> None:
         self.labels.flags.writeable = False
@@ -84,7 +88,7 @@ def examine_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PA
     fine = refine_regions(image, patches, coarse, parameters)
     regions, region_labels, rejected = _regions_of(image, fine.labels, fine.planes, fine.sigma, fine.bend, parameters)
     found = PlanarRegions(regions, image.time, image.frame_id)
-    return RegionExtraction(image, found, fine.labels, region_labels, rejected)
+    return RegionExtraction(image, found, fine.labels, region_labels, rejected, parameters)
 
 
 def _regions_of(
@@ -108,9 +112,9 @@ def _regions_of(
         if outline.area <= 0.0:
             continue
         label, R = outline.label, R_world_regions[outline.label]
-        reason = _reason_against(outline, R, bend[label], parameters)
-        if reason:
-            rejected.append(RejectedRegion(label, reason, outline.points_image))
+        objection = _objection(outline, R, bend[label], parameters)
+        if objection:
+            rejected.append(RejectedRegion(label, *objection, outline.points_image))
             continue
         inside = [hole.points for hole in holes if hole.label == label and _within(hole.points, outline.points)]
         x, y, z = *outline.points.mean(axis=0), outline.height
@@ -118,7 +122,7 @@ def _regions_of(
             simplify(points - (x, y), parameters.outline_tolerance) for points in (outline.points, *inside)
         )
         if len(hull) < 3:
-            rejected.append(RejectedRegion(label, "thinner than the outline's tolerance", outline.points_image))
+            rejected.append(RejectedRegion(label, "thin", "thinner than the outline's tolerance", outline.points_image))
             continue
         cut_out = tuple(hole for hole in cut_out if len(hole) > 2)
         parts = convex_parts(hull, parameters.convex_tolerance, cut_out)
@@ -190,21 +194,22 @@ def _frames(planes: Array, T_world_camera: Pose) -> Array:
     return np.stack((np.cross(y, normals), y, normals), axis=2)
 
 
-def _reason_against(outline: _Outline, R: Array, bend: float, parameters: RegionParameters) -> str:
+def _objection(outline: _Outline, R: Array, bend: float, parameters: RegionParameters) -> tuple[str, str] | None:
+    """Cause and reason why a piece is no region, if there is one."""
     slope = math.acos(min(max(R[2, 2], -1.0), 1.0))
     if outline.area < parameters.area_min:
-        return f"area {outline.area:.4f} m^2, limit {parameters.area_min:g} m^2"
+        return "small", f"area {outline.area:.4f} m^2, limit {parameters.area_min:g} m^2"
     if slope > parameters.slope_max:
-        return f"slope {np.rad2deg(slope):.0f} deg, limit {np.rad2deg(parameters.slope_max):.0f} deg"
+        return "steep", f"slope {np.rad2deg(slope):.0f} deg, limit {np.rad2deg(parameters.slope_max):.0f} deg"
     if outline.depth < parameters.distance_min:
-        return f"{outline.depth:.2f} m from the camera, limit {parameters.distance_min:g} m: own body"
+        return "near", f"{outline.depth:.2f} m from the camera, limit {parameters.distance_min:g} m: own body"
     if outline.patches < parameters.patches_min:
-        return f"{outline.patches:.0f} patches, limit {parameters.patches_min}"
+        return "few pixels", f"{outline.patches:.0f} patches, limit {parameters.patches_min}"
     if math.isinf(bend):
-        return "too thin to fit a plane"
+        return "thin", "too thin to fit a plane"
     if bend > parameters.bend_max:
-        return f"bent by {1e3 * bend:.1f} mm, limit {1e3 * parameters.bend_max:g} mm"
-    return ""
+        return "bent", f"bent by {1e3 * bend:.1f} mm, limit {1e3 * parameters.bend_max:g} mm"
+    return None
 
 
 def _within(hole: Array, loop: Array) -> bool:

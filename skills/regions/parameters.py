@@ -61,7 +61,7 @@ class RegionParameters:
     area_min: float = parameter(0.01, unit="m^2", minimum=0.0, maximum=10.0, meaning="smaller regions are dropped")
     hole_area_min: float = parameter(0.002, unit="m^2", minimum=0.0, maximum=1.0, meaning="smaller holes are filled")
     slope_max: float = parameter(
-        np.deg2rad(40.0), unit="rad", minimum=0.0, maximum=np.pi / 2, meaning="steeper regions are no ground"
+        np.deg2rad(40.0), unit="rad", minimum=0.0, maximum=np.pi, meaning="steeper regions are no ground"
     )
     distance_min: float = parameter(
         0.45, unit="m", minimum=0.0, maximum=5.0, meaning="regions nearer to the camera are the robot's own body"

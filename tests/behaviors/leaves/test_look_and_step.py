@@ -29,7 +29,7 @@ def requests(monkeypatch: pytest.MonkeyPatch) -> list[PlanRequest]:
         return plan(request.first_sequence_id, plan_id=request.plan_id)
 
     def examine(image, parameters):
-        return RegionExtraction(image, ground(image.time), np.zeros((1, 1), dtype=np.int32), 4, (0,), ())
+        return RegionExtraction(image, ground(image.time), np.zeros((1, 1), dtype=np.int16), (0,), (), parameters)
 
     monkeypatch.setattr(plan_steps, "plan_on_request", answer)
     monkeypatch.setattr(look, "examine_regions", examine)

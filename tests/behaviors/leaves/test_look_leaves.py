@@ -30,7 +30,7 @@ def looked_at(monkeypatch: pytest.MonkeyPatch) -> list[DepthImage]:
         assert parameters is PARAMETERS["regions"]
         images.append(image)
         seen = PlanarRegions(ground(image.time).regions, image.time, image.frame_id)
-        return RegionExtraction(image, seen, np.zeros((1, 1), dtype=np.int32), 4, (0,), ())
+        return RegionExtraction(image, seen, np.zeros((1, 1), dtype=np.int16), (0,), (), parameters)
 
     monkeypatch.setattr(look, "examine_regions", examine)
     return images
