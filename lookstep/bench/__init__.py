@@ -1,0 +1,1 @@
+"""Benchmarks: figures beside ground truth and baselines, one package a subject."""

@@ -1,0 +1,93 @@
+"""Let an extractor look at many scenes and judge what it finds.
+
+From Python, on scenes that may be used for tuning:
+
+    measure_quality(extractor(), "scattered", "standard", TUNING_SEEDS[:12])
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterable, Sequence
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lookstep.bench.perception.ground_cells import GroundCells, ground_figures, judge_ground
+from lookstep.bench.perception.quality import Quality, figures, judge, pool
+from lookstep.bench.perception.scenes import CAMERA, NOISES, Scene, scene
+from lookstep.bench.perception.truth import Truth, true_view
+from sim_envs.courses import Ground
+from sim_envs.sensors.depth_noise import DepthNoiseModel
+from skills.geometry.camera import DepthImage
+from skills.regions import PlanarRegions, RegionParameters, examine_regions
+
+Extractor = Callable[[DepthImage], tuple[PlanarRegions, NDArray[np.integer]]]
+"""Finds regions in an image, and says which label each pixel has, (height, width), negative for none."""
+
+
+def every_plane(parameters: RegionParameters) -> RegionParameters:
+    """The same parameters, but walls and overhangs, what is near and what is small are regions too."""
+    return dataclasses.replace(parameters, slope_max=np.pi, distance_min=0.0, area_min=0.0)
+
+
+def extractor(parameters: RegionParameters | None = None) -> Extractor:
+    """The extraction of `skills.regions` without its limits on slope and nearness."""
+    chosen = every_plane(parameters or RegionParameters())
+
+    def extract(image: DepthImage) -> tuple[PlanarRegions, NDArray[np.integer]]:
+        extraction = examine_regions(image, chosen)
+        return extraction.regions, extraction.labels
+
+    return extract
+
+
+def measure_quality(
+    extract: Extractor,
+    scene_name: str,
+    noise: str,
+    seeds: Iterable[int],
+    depth_max: float = RegionParameters().depth_max,
+) -> dict[str, float]:
+    """Figures of an extractor over scenes of one name, by the names in `figures` and `ground_figures`.
+
+    Args:
+        extract: what is judged.
+        scene_name: of `SCENES`.
+        noise: of `NOISES`.
+        seeds: of the scenes.
+        depth_max: surfaces deeper than this are not judged [m].
+    """
+    frames = [judge_frame(extract, true_frame(scene_name, seed, depth_max), noise) for seed in seeds]
+    return frame_figures(frames)
+
+
+def frame_figures(frames: Sequence[tuple[Quality, GroundCells | None]]) -> dict[str, float]:
+    """Figures of several frames."""
+    grounds = [cells for _, cells in frames if cells is not None]
+    return figures(pool([quality for quality, _ in frames])) | (ground_figures(grounds) if grounds else {})
+
+
+def true_frame(scene_name: str, seed: int, depth_max: float) -> tuple[Scene, Truth]:
+    """A scene and what its camera truly sees."""
+    looked_at = scene(scene_name, seed)
+    return looked_at, true_view(looked_at, depth_max)
+
+
+def judge_frame(extract: Extractor, frame: tuple[Scene, Truth], noise: str) -> tuple[Quality, GroundCells | None]:
+    """What an extractor makes of one frame; cells of ground on the contiguous course only."""
+    looked_at, truth = frame
+    regions, labels = extract(noisy(truth.image, noise))
+    cells = judge_ground(truth, Ground(looked_at.boxes), regions) if looked_at.name == "contiguous" else None
+    return judge(truth, regions, labels), cells
+
+
+def noisy(image: DepthImage, noise: str) -> DepthImage:
+    """An image as the sensor measures it; its frame number alone determines the noise."""
+    return dataclasses.replace(image, depth=_noise_model(noise).corrupt(image.depth, image.frame_id))
+
+
+@lru_cache
+def _noise_model(noise: str) -> DepthNoiseModel:
+    return DepthNoiseModel(NOISES[noise], CAMERA, seed=0)
