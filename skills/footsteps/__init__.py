@@ -5,6 +5,7 @@ from skills.footsteps.footstep_parameters import FootstepParameters, TerrainPara
 from skills.footsteps.footstep_planner import plan_footsteps, plan_from_stance, terrain_ahead, whole_sole
 from skills.footsteps.swing_clearance import SwingClearance, swing_clearance
 from skills.footsteps.terrain import Foothold, RegionTerrain, Terrain, region_terrain
+from skills.footsteps.whole_way import plan_whole_way, stand_on
 
 __all__ = [
     "Foothold",
@@ -20,7 +21,9 @@ __all__ = [
     "TerrainParameters",
     "plan_footsteps",
     "plan_from_stance",
+    "plan_whole_way",
     "region_terrain",
+    "stand_on",
     "swing_clearance",
     "terrain_ahead",
     "whole_sole",
