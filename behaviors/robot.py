@@ -9,6 +9,7 @@ from typing import Protocol
 
 from skills.footsteps.footstep import Footstep
 from skills.geometry.camera import DepthImage
+from skills.geometry.lidar import LidarScan
 from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingStatus
 
 
@@ -30,6 +31,10 @@ class Robot(Protocol):
 
     def depth_image(self) -> DepthImage | None:
         """The newest depth image; None before the first."""
+        ...
+
+    def lidar_scan(self) -> LidarScan | None:
+        """The newest lidar scan; None before the first."""
         ...
 
     def send_footsteps(self, steps: tuple[Footstep, ...]) -> None:

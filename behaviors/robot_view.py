@@ -5,6 +5,7 @@ from __future__ import annotations
 from behaviors.robot import Robot
 from skills.footsteps.footstep import Footstep
 from skills.geometry.camera import DepthImage
+from skills.geometry.lidar import LidarScan
 from skills.walking.walking_state import RobotState, StepEvent, WalkingStatus
 
 Command = tuple[str, tuple[Footstep, ...]]
@@ -51,6 +52,10 @@ class RobotView:
     def depth_image(self) -> DepthImage | None:
         """The newest depth image; None before the first."""
         return self.robot.depth_image()
+
+    def lidar_scan(self) -> LidarScan | None:
+        """The newest lidar scan; None before the first."""
+        return self.robot.lidar_scan()
 
     def send_footsteps(self, steps: tuple[Footstep, ...]) -> None:
         """Replace all queued steps; the step whose swing is under way goes on."""

@@ -14,7 +14,7 @@ from typing import Any, get_type_hints
 
 from sim_envs.judge import JudgeParameters
 from sim_envs.robot import RobotDescription
-from sim_envs.sensors import DepthCameraParameters, DepthNoise
+from sim_envs.sensors import DepthCameraParameters, DepthNoise, LidarNoise, LidarParameters
 from sim_envs.worlds import FallParameters, KinematicWorldParameters
 from skills.body_path import SubGoalParameters
 from skills.footsteps import FootstepParameters, TerrainParameters
@@ -48,6 +48,8 @@ class Configuration:
     robot: RobotDescription
     camera: DepthCameraParameters
     noise: DepthNoise
+    lidar: LidarParameters
+    lidar_noise: LidarNoise
     world: KinematicWorldParameters
     falls: FallParameters
     judge: JudgeParameters

@@ -17,5 +17,7 @@ def build_world(course: Course, configuration: Configuration, seed: int = 0) -> 
         walking=configuration.walking,
         camera=configuration.camera,
         noise=configuration.noise,
+        lidar=configuration.lidar,
+        lidar_noise=configuration.lidar_noise,
         falls=configuration.falls,
     )

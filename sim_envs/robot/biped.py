@@ -1,6 +1,8 @@
-"""The robot as a composer entity: its MJCF file, and the depth camera that its table mounts on it."""
+"""The robot as a composer entity: its MJCF file, and the depth camera and the lidar that its table mounts on it."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from dm_control import composer, mjcf
@@ -8,8 +10,10 @@ from dm_control import composer, mjcf
 from sim_envs.robot.robot_description import RobotDescription
 from skills.geometry.pose import Pose, rotation_x
 
-_HOUSING_HALF_SIZE = (0.045, 0.0125, 0.0125)
-_HOUSING_BEHIND_LENS = 0.02
+_CAMERA_HALF_SIZE = (0.045, 0.0125, 0.0125)
+_CAMERA_BEHIND_LENS = 0.02
+# The lidar is drawn as the lower part of its housing, which its lowest rays just miss, and the mast that carries it.
+_LIDAR_RADIUS, _LIDAR_HALF_LENGTH, _LIDAR_BELOW = 0.04, 0.035, 0.08
 _HOUSING_COLOR = (0.22, 0.24, 0.28, 1.0)
 
 
@@ -20,32 +24,29 @@ class Biped(composer.Entity):
         self._description = description
         self._mjcf_root = mjcf.from_path(str(description.mjcf_path))
         self._add_camera()
+        self._add_lidar()
 
     def _add_camera(self) -> None:
-        body = self._mjcf_root.find("body", self._description.camera_body)
-        if body is None:
-            raise ValueError(
-                f"camera_body: got {self._description.camera_body!r}, which is no body of {self._description.mjcf}"
-            )
-        self._camera_body = body
+        self._camera_body = self._mount("camera_body", self._description.camera_body)
         T_body_camera = self._description.T_body_camera
         # MuJoCo's cameras look along -z with y up.
         T_body_mujoco_camera = Pose(T_body_camera.R @ rotation_x(np.pi), T_body_camera.p)
-        body.add("camera", name="depth", pos=T_body_camera.p, quat=T_body_mujoco_camera.quaternion_wxyz)
+        self._camera_body.add("camera", name="depth", pos=T_body_camera.p, quat=T_body_mujoco_camera.quaternion_wxyz)
         # Behind the lens, where the camera does not see it.
-        body.add(
-            "geom",
-            name="camera_housing",
-            type="box",
-            size=_HOUSING_HALF_SIZE,
-            pos=T_body_camera.p - _HOUSING_BEHIND_LENS * T_body_camera.R[:, 2],
-            quat=T_body_camera.quaternion_wxyz,
-            group=2,
-            contype=0,
-            conaffinity=0,
-            mass=0,
-            rgba=_HOUSING_COLOR,
-        )
+        T_camera_housing = Pose(np.eye(3), np.array((0.0, 0.0, -_CAMERA_BEHIND_LENS)))
+        _add_housing(self._camera_body, "camera", T_body_camera @ T_camera_housing, "box", _CAMERA_HALF_SIZE)
+
+    def _add_lidar(self) -> None:
+        self._lidar_body = self._mount("lidar_body", self._description.lidar_body)
+        T_lidar_housing = Pose(np.eye(3), np.array((0.0, 0.0, -_LIDAR_BELOW)))
+        T_body_housing = self._description.T_body_lidar @ T_lidar_housing
+        _add_housing(self._lidar_body, "lidar", T_body_housing, "cylinder", (_LIDAR_RADIUS, _LIDAR_HALF_LENGTH))
+
+    def _mount(self, parameter: str, name: str) -> Any:
+        body = self._mjcf_root.find("body", name)
+        if body is None:
+            raise ValueError(f"{parameter}: got {name!r}, which is no body of {self._description.mjcf}")
+        return body
 
     @property
     def mjcf_model(self) -> mjcf.RootElement:
@@ -61,3 +62,24 @@ class Biped(composer.Entity):
     def camera_body(self) -> mjcf.Element:
         """The body that carries the depth camera."""
         return self._camera_body
+
+    @property
+    def lidar_body(self) -> mjcf.Element:
+        """The body that carries the lidar."""
+        return self._lidar_body
+
+
+def _add_housing(body: Any, sensor: str, T_body_housing: Pose, shape: str, size: tuple[float, ...]) -> None:
+    body.add(
+        "geom",
+        name=f"{sensor}_housing",
+        type=shape,
+        size=size,
+        pos=T_body_housing.p,
+        quat=T_body_housing.quaternion_wxyz,
+        group=2,
+        contype=0,
+        conaffinity=0,
+        mass=0,
+        rgba=_HOUSING_COLOR,
+    )

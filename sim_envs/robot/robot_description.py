@@ -1,4 +1,4 @@
-"""The robot as a table: which MJCF file describes its body, how large its soles are, where its depth camera sits.
+"""The robot as a table: which MJCF file describes its body, how large its soles are, where its eyes sit.
 
 The figures of the body itself (masses, limits, efforts) live in the MJCF file alone, which MuJoCo and pinocchio both
 read.
@@ -35,6 +35,18 @@ class RobotDescription:
         47.0, unit="deg", meaning="how far the camera looks below the horizon", minimum=0.0, maximum=90.0
     )
 
+    lidar_body: str = parameter("torso", unit="1", meaning="body that carries the lidar")
+    lidar_position: tuple[float, float, float] = parameter(
+        (0.16, 0.0, 0.8), unit="m", meaning="centre of its rays in that body's frame", minimum=-2.0, maximum=2.0
+    )
+    lidar_pitch_deg: float = parameter(
+        25.0,
+        unit="deg",
+        meaning="how far the lidar's forward axis looks below the horizon",
+        minimum=-90.0,
+        maximum=90.0,
+    )
+
     @property
     def mjcf_path(self) -> Path:
         """Where the MJCF file is; both MuJoCo and pinocchio load it by name."""
@@ -45,6 +57,11 @@ class RobotDescription:
         """Depth camera (x right, y down, z forward) in the body that carries it."""
         pitch = np.deg2rad(self.camera_pitch_deg)
         return Pose(rotation_y(pitch) @ _R_body_level_camera, np.array(self.camera_position))
+
+    @property
+    def T_body_lidar(self) -> Pose:
+        """Lidar (x forward, y left, z up) in the body that carries it."""
+        return Pose(rotation_y(np.deg2rad(self.lidar_pitch_deg)), np.array(self.lidar_position))
 
     @property
     def sole_corners_sole(self) -> np.ndarray:

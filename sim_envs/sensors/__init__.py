@@ -1,17 +1,25 @@
-"""Simulated sensors: a depth camera with realistic noise, rendered by a rasterizer that needs no graphics library."""
+"""Simulated sensors with realistic noise: a depth camera and a lidar, neither of which needs a graphics library."""
 
 from sim_envs.sensors.depth_camera import DepthCamera, DepthCameraParameters, looking
 from sim_envs.sensors.depth_noise import DEPTH_NOISE_PRESETS, DepthNoise
 from sim_envs.sensors.geom_mesh import GeomMesh, geom_mesh, geom_rgba
+from sim_envs.sensors.lidar import Lidar, LidarParameters
+from sim_envs.sensors.lidar_noise import LIDAR_NOISE_PRESETS, LidarNoise
 from sim_envs.sensors.rasterizer import Raster, rasterize_depth, rasterize_faces
+from sim_envs.sensors.snapshot import Snapshot
 
 __all__ = [
     "DEPTH_NOISE_PRESETS",
+    "LIDAR_NOISE_PRESETS",
     "DepthCamera",
     "DepthCameraParameters",
     "DepthNoise",
     "GeomMesh",
+    "Lidar",
+    "LidarNoise",
+    "LidarParameters",
     "Raster",
+    "Snapshot",
     "geom_mesh",
     "geom_rgba",
     "looking",

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from sim_envs.sensors.depth_noise import DepthNoise, DepthNoiseModel
 from sim_envs.sensors.geom_mesh import geom_mesh
 from sim_envs.sensors.rasterizer import rasterize_depth
+from sim_envs.sensors.snapshot import Snapshot
 from skills.geometry.camera import DepthImage, PinholeCamera
 from skills.geometry.pose import Array, Pose
 from skills.parameters import parameter, parameters
@@ -72,28 +73,18 @@ class DepthCamera:
         self._noise = DepthNoiseModel(noise, self.camera, seed)
         self._T_mount = Pose(self._noise.R_mount, np.zeros(3))
 
-    def capture(
-        self,
-        geom_positions: Array,
-        geom_rotations: Array,
-        T_world_camera: Pose,
-        time: float,
-        frame_id: int,
-        T_world_camera_estimate: Pose | None = None,
-    ) -> DepthImage:
-        """What the sensor delivers: noisy depth, and the camera pose that the robot believes in.
+    @property
+    def rate(self) -> float:
+        """Images a second of robot time [Hz]."""
+        return self.parameters.rate
 
-        Args:
-            geom_positions: snapshot of `MjData.geom_xpos`, (ngeom, 3) [m].
-            geom_rotations: snapshot of `MjData.geom_xmat`, (ngeom, 3, 3).
-            T_world_camera: true pose of the mount.
-            time: robot time [s].
-            frame_id: counts frames from 0; with the seed it determines the noise.
-            T_world_camera_estimate: the robot's estimate of that pose, where it differs from the truth.
-        """
-        clean = self.render(geom_positions, geom_rotations, T_world_camera @ self._T_mount)
-        depth = self._noise.corrupt(clean, frame_id)
-        return DepthImage(depth, self.camera, T_world_camera_estimate or T_world_camera, time, frame_id)
+    def capture(self, snapshot: Snapshot) -> DepthImage:
+        """What the sensor delivers: noisy depth, and the pose that the robot believes in."""
+        T_world_true = snapshot.T_world_sensor @ self._T_mount
+        clean = self.render(snapshot.geom_positions, snapshot.geom_rotations, T_world_true)
+        depth = self._noise.corrupt(clean, snapshot.number)
+        T_world_camera = snapshot.T_estimate_world @ snapshot.T_world_sensor
+        return DepthImage(depth, self.camera, T_world_camera, snapshot.time, snapshot.number)
 
     def render(self, geom_positions: Array, geom_rotations: Array, T_world_camera: Pose) -> NDArray[np.float32]:
         """True depth, (height, width) float32 [m]; 0 where nothing is within range."""

@@ -15,8 +15,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from sim_envs.sensors.mount_error import mount_rotation
 from skills.geometry.camera import PinholeCamera
-from skills.geometry.pose import Pose
 from skills.kernels import kernel
 from skills.parameters import parameter, parameters
 
@@ -76,10 +76,7 @@ class DepthNoiseModel:
     @property
     def R_mount(self) -> NDArray[np.float64]:
         """Rotation from the true camera to the believed one, R_believed_true (3, 3), about an axis drawn once."""
-        axis = np.random.default_rng((self._seed, _MOUNT_STREAM)).standard_normal(3)
-        half = 0.5 * np.deg2rad(self.noise.mount_error_deg)
-        vector = np.sin(half) * axis / np.linalg.norm(axis)
-        return Pose.from_quaternion_wxyz((np.cos(half), *vector), np.zeros(3)).R
+        return mount_rotation(np.deg2rad(self.noise.mount_error_deg), (self._seed, _MOUNT_STREAM))
 
     def corrupt(self, depth: NDArray[np.float32], frame_id: int) -> NDArray[np.float32]:
         """Depth as the sensor measures it, (height, width) float32 [m]; 0 stays 0, as does what leaves [near, far].

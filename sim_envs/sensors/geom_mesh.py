@@ -60,7 +60,7 @@ def geom_mesh(model: mujoco.MjModel, *, groups: Sequence[int] = _VISIBLE_GROUPS,
     Raises:
         ValueError: where a visible geom has a shape that has no faces here (a signed distance field).
     """
-    geom_ids = [geom for geom in range(model.ngeom) if model.geom_group[geom] in groups and _opacity(model, geom) > 0]
+    geom_ids = visible_geoms(model, groups)
     made = [_shape(model, geom, segments) for geom in geom_ids]
     vertex_start = np.cumsum([0, *(len(vertices) for vertices, _ in made)])
     spheres = [_sphere_around(vertices) for vertices, _ in made]
@@ -78,6 +78,11 @@ def geom_mesh(model: mujoco.MjModel, *, groups: Sequence[int] = _VISIBLE_GROUPS,
         radii=np.array([radius for _, radius in spheres], dtype=np.float64),
         one_sided=np.array(one_sided, dtype=np.bool_),
     )
+
+
+def visible_geoms(model: mujoco.MjModel, groups: Sequence[int] = _VISIBLE_GROUPS) -> list[int]:
+    """Which geoms sensors see: those of the groups that are not fully transparent."""
+    return [geom for geom in range(model.ngeom) if model.geom_group[geom] in groups and _opacity(model, geom) > 0]
 
 
 def geom_rgba(model: mujoco.MjModel, geom: int) -> Array:

@@ -18,14 +18,15 @@ from dm_control import mjcf
 
 from sim_envs.courses import Course, Ground
 from sim_envs.robot import Biped, RobotDescription, qpos_from_configuration
-from sim_envs.sensors import DepthCamera, DepthCameraParameters, DepthNoise
+from sim_envs.sensors import DepthCamera, DepthCameraParameters, DepthNoise, Lidar, LidarNoise, LidarParameters
 from sim_envs.worlds.arena import CourseArena
 from sim_envs.worlds.box_motion import BoxMotions
-from sim_envs.worlds.depth_frames import DepthFrames
 from sim_envs.worlds.falls import FallDetector, FallParameters
+from sim_envs.worlds.sensor_frames import SensorFrames
 from sim_envs.worlds.state_drift import StateDrift, StateDriftParameters
 from skills.footsteps.footstep import Footstep, Side, Stance
 from skills.geometry.camera import DepthImage
+from skills.geometry.lidar import LidarScan
 from skills.geometry.pose import Array, Pose
 from skills.parameters import parameter, parameters
 from skills.walking import KinematicWalker, RobotModel, WalkingParameters
@@ -67,6 +68,8 @@ class KinematicWorld:
         walking: WalkingParameters | None = None,
         camera: DepthCameraParameters | None = None,
         noise: DepthNoise | None = None,
+        lidar: LidarParameters | None = None,
+        lidar_noise: LidarNoise | None = None,
         falls: FallParameters | None = None,
         drift: StateDriftParameters | None = None,
     ) -> None:
@@ -81,10 +84,10 @@ class KinematicWorld:
         self._arena, self._biped = CourseArena(course), Biped(self.robot)
         self._arena.add_free_entity(self._biped)
         self.physics = mjcf.Physics.from_mjcf_model(self._arena.mjcf_model)
-        self._camera_body: Any = self.physics.bind(self._biped.camera_body)
-        self._frames = DepthFrames(
-            DepthCamera(self.model, camera or DepthCameraParameters(), noise or DepthNoise(), seed=seed)
-        )
+        self._camera = DepthCamera(self.model, camera or DepthCameraParameters(), noise or DepthNoise(), seed=seed)
+        self._lidar = Lidar(self.model, lidar or LidarParameters(), lidar_noise or LidarNoise(), seed=seed)
+        self._images = SensorFrames(self._camera, self._index(self._biped.camera_body), self.robot.T_body_camera)
+        self._scans = SensorFrames(self._lidar, self._index(self._biped.lidar_body), self.robot.T_body_lidar)
 
         model = RobotModel(self.robot.mjcf_path, self.robot.sole_length, self.robot.sole_width)
         self._walker = KinematicWalker(model, walking or WalkingParameters(), self._start_stance())
@@ -94,7 +97,7 @@ class KinematicWorld:
         self._asked_time = 0.0
         self._pose_robot(self._walker.output.q)
         self._place_shapes()
-        self._take_frame()
+        self._look()
 
     @property
     def time(self) -> float:
@@ -116,7 +119,12 @@ class KinematicWorld:
     @property
     def depth_camera(self) -> DepthCamera:
         """The simulated depth camera."""
-        return self._frames.camera
+        return self._camera
+
+    @property
+    def lidar(self) -> Lidar:
+        """The simulated lidar."""
+        return self._lidar
 
     def state(self) -> RobotState:
         """The robot's estimate of its state."""
@@ -132,7 +140,11 @@ class KinematicWorld:
 
     def depth_image(self) -> DepthImage | None:
         """The newest depth image, rendered when it is first asked for."""
-        return self._frames.newest()
+        return self._images.newest()
+
+    def lidar_scan(self) -> LidarScan | None:
+        """The newest lidar scan, rendered when it is first asked for."""
+        return self._scans.newest()
 
     def send_footsteps(self, steps: tuple[Footstep, ...]) -> None:
         """Replace all queued steps; a robot that has fallen takes none.
@@ -189,8 +201,7 @@ class KinematicWorld:
         self._walk()
         self._place_shapes()
         self._drift.advance(self.time, 1.0 / self.parameters.control_rate, self._pelvis)
-        if self._frames.due(self.time):
-            self._take_frame()
+        self._look()
 
     def _walk(self) -> None:
         output = self._walker.advance(1.0 / self.parameters.control_rate)
@@ -226,12 +237,13 @@ class KinematicWorld:
         mujoco.mj_kinematics(self.model, self.physics.data.ptr)
         mujoco.mj_camlight(self.model, self.physics.data.ptr)
 
-    def _take_frame(self) -> None:
-        body = self._camera_body
-        T_world_body = Pose(body.xmat.reshape(3, 3), body.xpos)
-        T_world_camera = T_world_body @ self.robot.T_body_camera
-        T_world_camera_estimate = self._drift.T_estimate_world @ T_world_camera
-        self._frames.take(self.time, self.physics.data.ptr, T_world_camera, T_world_camera_estimate)
+    def _look(self) -> None:
+        for frames in (self._images, self._scans):
+            frames.advance(self.time, self.physics.data.ptr, self._drift.T_estimate_world)
+
+    def _index(self, body: mjcf.Element) -> int:
+        bound: Any = self.physics.bind(body)
+        return int(bound.element_id)
 
 
 def _as_tuples(T: Pose) -> tuple[tuple[float, ...], tuple[float, ...]]:

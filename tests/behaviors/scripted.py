@@ -36,6 +36,9 @@ class ScriptedRobot:
     def depth_image(self) -> None:
         return None
 
+    def lidar_scan(self) -> None:
+        return None
+
     def send_footsteps(self, steps: tuple[Footstep, ...]) -> None:
         self.sent = steps
         self.commands.append(("send_footsteps", self.time))

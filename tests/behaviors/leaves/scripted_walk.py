@@ -89,6 +89,9 @@ class WalkingRobot:
         T_world_camera = Pose.from_xyz_rpy((0.0, 0.0, 1.0))
         return DepthImage(np.zeros((3, 4), dtype=np.float32), _CAMERA, T_world_camera, self.time, self.frame_id)
 
+    def lidar_scan(self) -> None:
+        return None
+
     def send_footsteps(self, steps: tuple[Footstep, ...]) -> None:
         self.queue = steps
         self.commands.append("send_footsteps")

@@ -11,6 +11,7 @@ from sim_envs.sensors import (
     DEPTH_NOISE_PRESETS,
     DepthCamera,
     DepthCameraParameters,
+    Snapshot,
     geom_mesh,
     looking,
     rasterize_faces,
@@ -106,10 +107,11 @@ def test_round_links_are_within_millimetres_of_rays(standing_robot):
 def test_a_capture_tells_where_and_when_it_was_taken(standing_robot):
     model, _, positions, rotations, T_world_camera = standing_robot
     camera = DepthCamera(model, DepthCameraParameters(resolution=0.25), DEPTH_NOISE_PRESETS["standard"], seed=0)
-    image = camera.capture(positions, rotations, T_world_camera, 1.5, 45)
+    instant = Snapshot(1.5, 45, positions, rotations, T_world_camera)
+    image = camera.capture(instant)
     assert (image.time, image.frame_id, image.camera) == (1.5, 45, camera.camera)
     np.testing.assert_array_equal(image.T_world_camera.R, T_world_camera.R)
-    again = camera.capture(positions, rotations, T_world_camera, 1.5, 45)
+    again = camera.capture(instant)
     np.testing.assert_array_equal(image.depth, again.depth)
 
 
@@ -117,9 +119,9 @@ def test_the_robot_believes_in_its_estimate_and_not_in_the_mount_error(standing_
     model, _, positions, rotations, T_world_camera = standing_robot
     small = DepthCameraParameters(resolution=0.25)
     crooked = DepthCamera(model, small, DEPTH_NOISE_PRESETS["hard"], seed=0)
-    estimate = Pose(T_world_camera.R, T_world_camera.p + np.array((0.1, 0, 0)))
-    image = crooked.capture(positions, rotations, T_world_camera, 0.0, 0, estimate)
-    np.testing.assert_array_equal(image.T_world_camera.p, estimate.p)
+    T_estimate_world = Pose.from_xyz_rpy((0.1, 0, 0), (0, 0, 0.2))
+    image = crooked.capture(Snapshot(0.0, 0, positions, rotations, T_world_camera, T_estimate_world))
+    np.testing.assert_array_equal(image.T_world_camera.p, (T_estimate_world @ T_world_camera).p)
     straight = DepthCamera(model, small, QUIET, seed=0)
     turned = straight.render(positions, rotations, T_world_camera @ Pose(crooked._noise.R_mount, np.zeros(3)))
     seen = (turned > 0) & (image.depth > 0)
