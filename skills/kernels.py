@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 _THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
-_KERNEL_FOLDERS = ("skills", "sim_envs")
+_KERNEL_FOLDERS = ("skills", "sim_envs", "lookstep")
 
 
 def prepare_runtime() -> None:

@@ -86,12 +86,12 @@ def examine_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PA
     patches = fit_patches(image, parameters)
     coarse = grow_regions(patches, parameters)
     fine = refine_regions(image, patches, coarse, parameters)
-    regions, region_labels, rejected = _regions_of(image, fine.labels, fine.planes, fine.sigma, fine.bend, parameters)
+    regions, region_labels, rejected = polygons_of(image, fine.labels, fine.planes, fine.sigma, fine.bend, parameters)
     found = PlanarRegions(regions, image.time, image.frame_id)
     return RegionExtraction(image, found, fine.labels, region_labels, rejected, parameters)
 
 
-def _regions_of(
+def polygons_of(
     image: DepthImage,
     labels: NDArray[np.int16],
     planes: Array,
@@ -99,7 +99,19 @@ def _regions_of(
     bend: Array,
     parameters: RegionParameters,
 ) -> tuple[tuple[PlanarRegion, ...], tuple[int, ...], tuple[RejectedRegion, ...]]:
-    """Turn labelled pixels into polygons in the world and sort out what is no ground."""
+    """Turn labelled pixels into polygons in the world and sort out what is no ground.
+
+    Args:
+        image: the depth image.
+        labels: flat piece of each pixel, (height, width); -1 for none.
+        planes: plane of each piece, (R, 3) [1/m], as in `Patches`.
+        sigma: spread of each piece's points about its plane, (R,) [m].
+        bend: how much each piece is bent, (R,) [m]; infinite where that is not known.
+        parameters: tolerances and limits.
+
+    Returns:
+        The regions, the label behind each of them, and the pieces that became no region.
+    """
     regions: list[PlanarRegion] = []
     region_labels: list[int] = []
     rejected: list[RejectedRegion] = []

@@ -1,0 +1,39 @@
+"""`lookstep bench perception`: how good regions are, and how fast every stage from the sensors to the map is."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from lookstep.bench.subject import Progress, Report
+
+NAME = "perception"
+HELP = "quality of regions against ground truth, and the time of every stage of perception"
+EXAMPLE = "lookstep bench perception --quick --json perception.json"
+
+_FRAMES, _QUICK_FRAMES = 50, 4
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the number of frames."""
+    parser.add_argument(
+        "--frames",
+        type=_positive,
+        metavar="N",
+        help=f"scenes of each kind that are judged with each noise ({_FRAMES}; --quick: {_QUICK_FRAMES})",
+    )
+
+
+def measure(options: argparse.Namespace, progress: Progress) -> Report:
+    """Judge and time."""
+    # Loading the simulation takes seconds; whoever asks for help need not wait for it.
+    from lookstep.bench.perception.report import bench_perception
+
+    return bench_perception(options.frames or (_QUICK_FRAMES if options.quick else _FRAMES), progress)
+
+
+def _positive(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"got {text!r}, needs a whole number from 1")
+    return int(text)
