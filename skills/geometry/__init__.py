@@ -2,9 +2,11 @@
 
 from skills.geometry.camera import DepthImage, PinholeCamera
 from skills.geometry.capsule import Capsule
+from skills.geometry.convex_decomposition import convex_parts
 from skills.geometry.lidar import LidarScan, SpinningLidar
-from skills.geometry.polygon import clip_convex, contains_points, convex_hull, convex_parts, signed_area, simplify
+from skills.geometry.polygon import clip_convex, contains_points, convex_hull, signed_area
 from skills.geometry.pose import Array, Pose, readonly, wrap_angle
+from skills.geometry.simplification import simplify
 
 __all__ = [
     "Array",

@@ -1,7 +1,7 @@
 """Planar regions out of one depth image.
 
 After the rapid planar regions of Calvert et al. (look-and-step, 2022), with patch planes in closed form from inverse
-depth: patches -> regions of patches -> labels of finer cells -> outlines -> polygons and convex parts in the world.
+depth: patches -> regions of patches -> labels of pixels -> outlines -> polygons and convex parts in the world.
 Every step is deterministic and runs on one core.
 """
 
@@ -9,18 +9,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import accumulate, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.camera import DepthImage
-from skills.geometry.polygon import convex_parts, signed_area, simplify
+from skills.geometry.convex_decomposition import decompose
+from skills.geometry.polygon import contains_point, signed_area
 from skills.geometry.pose import Array, Pose, readonly
+from skills.geometry.simplification import simplify_rings
 from skills.regions.growing import grow_regions
-from skills.regions.outline import trace_outlines
+from skills.regions.outline import Indices, Outlines, trace_outlines
 from skills.regions.parameters import RegionParameters
 from skills.regions.patches import fit_patches, patch_size
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
+from skills.regions.plane_outlines import PlaneOutlines, back_project
 from skills.regions.refinement import refine_regions
 
 
@@ -112,117 +116,103 @@ def polygons_of(
     Returns:
         The regions, the label behind each of them, and the pieces that became no region.
     """
+    patch_pixels = patch_size(image.camera, parameters) ** 2
+    outlines = trace_outlines(labels, patch_pixels // 4)
+    on_planes = back_project(outlines, image, planes)
+    tolerances = np.maximum(parameters.outline_tolerance, on_planes.pixels)
+    starts, owners = outlines.starts.tolist(), outlines.labels.tolist()
+    areas, depths, pixels = on_planes.areas.tolist(), on_planes.depths.tolist(), outlines.pixels.tolist()
+    steepness, bends = on_planes.R_world_planes[:, 2, 2].tolist(), bend.tolist()
+    sigmas = sigma.tolist()
     regions: list[PlanarRegion] = []
     region_labels: list[int] = []
     rejected: list[RejectedRegion] = []
-    R_world_regions = _frames(planes, image.T_world_camera)
-    outlines = _back_project(
-        trace_outlines(labels), image, planes, R_world_regions, patch_size(image.camera, parameters)
-    )
-    holes = [outline for outline in outlines if outline.area < -parameters.hole_area_min]
-    for outline in outlines:
-        if outline.area <= 0.0:
+    for loop, label in enumerate(owners):
+        if pixels[loop] < 0:
             continue
-        label, R = outline.label, R_world_regions[outline.label]
-        objection = _objection(outline, R, bend[label], parameters)
-        if objection:
-            rejected.append(RejectedRegion(label, *objection, outline.points_image))
-            continue
-        inside = [hole.points for hole in holes if hole.label == label and _within(hole.points, outline.points)]
-        x, y, z = *outline.points.mean(axis=0), outline.height
-        hull, *cut_out = (
-            simplify(points - (x, y), parameters.outline_tolerance) for points in (outline.points, *inside)
+        objection = _objection(
+            areas[loop], steepness[label], depths[loop], pixels[loop] / patch_pixels, bends[label], parameters
         )
-        if len(hull) < 3:
-            rejected.append(RejectedRegion(label, "thin", "thinner than the outline's tolerance", outline.points_image))
-            continue
-        cut_out = tuple(hole for hole in cut_out if len(hole) > 2)
-        parts = convex_parts(hull, parameters.convex_tolerance, cut_out)
-        area = float(signed_area(hull)) + sum(float(signed_area(hole)) for hole in cut_out)
-        T_world_region = Pose(R, R @ np.array((x, y, z)))
-        regions.append(PlanarRegion(T_world_region, hull, parts, area, image.time, cut_out, float(sigma[label])))
-        region_labels.append(label)
+        if not objection:
+            rings = [loop, *_holes_in(loop, outlines, areas, parameters.hole_area_min)]
+            region = _region(
+                rings, label, starts, on_planes, tolerances, parameters.convex_tolerance, image.time, sigmas[label]
+            )
+            if region:
+                regions.append(region)
+                region_labels.append(label)
+                continue
+            objection = ("thin", "thinner than the outline's tolerance")
+        rejected.append(RejectedRegion(label, *objection, outlines.points[starts[loop] : starts[loop + 1]]))
     return tuple(regions), tuple(region_labels), tuple(rejected)
 
 
-@dataclass(frozen=True, slots=True)
-class _Outline:
-    """A loop around a flat piece or, clockwise, around a hole in it.
+def _region(
+    rings: list[int],
+    label: int,
+    starts: list[int],
+    on_planes: PlaneOutlines,
+    tolerances: Array,
+    convex_tolerance: float,
+    time: float,
+    sigma: float,
+) -> PlanarRegion | None:
+    """The region of an outline and its holes; none where it is thinner than the tolerance."""
+    R = on_planes.R_world_planes[label]
+    first, last = starts[rings[0]], starts[rings[0] + 1]
+    points, limits, ends = on_planes.points[first:last], tolerances[first:last], [0, last - first]
+    if len(rings) > 1:
+        spans = [slice(starts[ring], starts[ring + 1]) for ring in rings]
+        points = np.concatenate([on_planes.points[span] for span in spans])
+        limits = np.concatenate([tolerances[span] for span in spans])
+        ends = [0, *accumulate(span.stop - span.start for span in spans)]
+    vertices, ring_ends = simplify_rings(points, np.array(ends), limits)
+    if ring_ends[0] == 0:
+        return None
+    x, y = vertices[: ring_ends[0]].mean(axis=0)
+    vertices -= (x, y)
+    parts, part_ends = decompose(vertices, ring_ends, convex_tolerance)
+    hull, *holes = _cut(vertices, ring_ends)
+    holes = tuple(hole for hole in holes if len(hole))
+    area = float(signed_area(hull)) + sum(float(signed_area(hole)) for hole in holes)
+    T_world_region = Pose(R, R @ np.array((x, y, on_planes.heights[label])))
+    return PlanarRegion(T_world_region, hull, _cut(parts, part_ends), area, time, holes, sigma)
 
-    `points` are x, y and `height` is the z that they share, along the axes of the region from the world's origin;
-    `patches` is its size in the image and `depth` its mean.
-    """
 
-    label: int
-    points_image: Array
-    points: Array
-    height: float
-    area: float
-    patches: float
-    depth: float
+def _cut(stacked: Array, ends: Indices) -> tuple[Array, ...]:
+    """Polygons that are stacked."""
+    return tuple(stacked[a:b] for a, b in pairwise((0, *ends.tolist())))
 
 
-def _back_project(
-    loops: list[tuple[int, Array]], image: DepthImage, planes: Array, R_world_regions: Array, patch: int
-) -> list[_Outline]:
-    """Outlines on their planes, all in one go; loops around single pixels are left out."""
-    loops = [(label, loop) for label, loop in loops if len(loop) > 4]
-    if not loops:
-        return []
-    camera = image.camera
-    sizes = np.array([len(loop) for _, loop in loops])
-    ends = np.cumsum(sizes)
-    starts = ends - sizes
-    labels = np.repeat([label for label, _ in loops], sizes)
-    uv = np.concatenate([loop for _, loop in loops]) - 0.5
-    rays = np.column_stack(((uv - (camera.cx, camera.cy)) / (camera.fx, camera.fy), np.ones(len(uv))))
-    depth = 1.0 / np.maximum(np.einsum("ni,ni->n", rays, planes[labels]), 1.0 / camera.far)
-    points = np.einsum("ni,nij->nj", image.T_world_camera @ (rays * depth[:, None]), R_world_regions[labels])
-    following = np.arange(1, len(uv) + 1)
-    following[ends - 1] = starts
-    turns = points[:, 0] * points[following, 1] - points[following, 0] * points[:, 1]
-    areas = 0.5 * np.add.reduceat(turns, starts)
-    pixels = -0.5 * np.add.reduceat(uv[:, 0] * uv[following, 1] - uv[following, 0] * uv[:, 1], starts)
-    patches = pixels / patch**2
-    depths = np.add.reduceat(depth, starts) / sizes
-    heights = np.add.reduceat(points[:, 2], starts) / sizes
+def _holes_in(loop: int, outlines: Outlines, areas: list[float], area_min: float) -> list[int]:
+    """The holes within an outline."""
+    owners, starts, points = outlines.labels, outlines.starts, outlines.points
+    candidates = np.flatnonzero((owners == owners[loop]) & (outlines.pixels < 0)).tolist()
+    around = points[starts[loop] : starts[loop + 1]]
     return [
-        _Outline(label, uv[a:b], points[a:b, :2], height, area, size, mean_depth)
-        for (label, _), a, b, height, area, size, mean_depth in zip(
-            loops,
-            *(values.tolist() for values in (starts, ends, heights, areas, patches, depths)),
-            strict=True,
-        )
+        hole
+        for hole in candidates
+        if -areas[hole] >= area_min and contains_point(around, points[starts[hole], 0], points[starts[hole], 1])
     ]
 
 
-def _frames(planes: Array, T_world_camera: Pose) -> Array:
-    """R_world_region of each plane, (R, 3, 3): z towards the camera's side, x along the world's x as far as it can."""
-    normals = -(planes @ T_world_camera.R.T) / np.linalg.norm(planes, axis=1, keepdims=True)
-    nx, ny, nz = normals.T
-    zero = np.zeros(len(planes))
-    y = np.where(np.abs(nx) < 0.9, np.array((zero, nz, -ny)), np.array((-nz, zero, nx))).T
-    y /= np.linalg.norm(y, axis=1, keepdims=True)
-    return np.stack((np.cross(y, normals), y, normals), axis=2)
-
-
-def _objection(outline: _Outline, R: Array, bend: float, parameters: RegionParameters) -> tuple[str, str] | None:
-    """Cause and reason why a piece is no region, if there is one."""
-    slope = math.acos(min(max(R[2, 2], -1.0), 1.0))
-    if outline.area < parameters.area_min:
-        return "small", f"area {outline.area:.4f} m^2, limit {parameters.area_min:g} m^2"
+def _objection(
+    area: float, steepness: float, depth: float, patches: float, bend: float, parameters: RegionParameters
+) -> tuple[str, str] | None:
+    """Cause and reason why an outline is no region, if there is one."""
+    slope = math.acos(min(max(steepness, -1.0), 1.0))
+    if math.isinf(depth):
+        return "edge-on", "seen edge-on: its plane leaves the camera's range within its outline"
+    if area < parameters.area_min:
+        return "small", f"area {area:.4f} m^2, limit {parameters.area_min:g} m^2"
     if slope > parameters.slope_max:
         return "steep", f"slope {np.rad2deg(slope):.0f} deg, limit {np.rad2deg(parameters.slope_max):.0f} deg"
-    if outline.depth < parameters.distance_min:
-        return "near", f"{outline.depth:.2f} m from the camera, limit {parameters.distance_min:g} m: own body"
-    if outline.patches < parameters.patches_min:
-        return "few pixels", f"{outline.patches:.0f} patches, limit {parameters.patches_min}"
+    if depth < parameters.distance_min:
+        return "near", f"{depth:.2f} m from the camera, limit {parameters.distance_min:g} m: own body"
+    if patches < parameters.patches_min:
+        return "few pixels", f"{patches:.0f} patches, limit {parameters.patches_min}"
     if math.isinf(bend):
         return "thin", "too thin to fit a plane"
     if bend > parameters.bend_max:
         return "bent", f"bent by {1e3 * bend:.1f} mm, limit {1e3 * parameters.bend_max:g} mm"
     return None
-
-
-def _within(hole: Array, loop: Array) -> bool:
-    return bool(np.all(hole.min(axis=0) >= loop.min(axis=0)) and np.all(hole.max(axis=0) <= loop.max(axis=0)))

@@ -1,15 +1,15 @@
 import numpy as np
 import pytest
 
+from skills.geometry.convex_decomposition import convex_parts
 from skills.geometry.polygon import (
     clip_convex,
     clip_half_plane,
     contains_points,
     convex_hull,
-    convex_parts,
     signed_area,
-    simplify,
 )
+from skills.geometry.simplification import simplify
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 L_SHAPE = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]])
@@ -75,7 +75,7 @@ def test_hull_is_convex_and_holds_every_point(seed):
 
 def test_simplify_keeps_corners_and_drops_the_rest():
     dense = np.concatenate([np.linspace(SQUARE[i], SQUARE[(i + 1) % 4], 10, endpoint=False) for i in range(4)])
-    short = simplify(dense, 0.01)
+    (short,) = simplify(dense, 0.01)
     assert len(short) == 4
     assert signed_area(short) == pytest.approx(1.0, abs=1e-6)
 
