@@ -172,7 +172,7 @@ class PlanJudge:
         whole = np.linalg.norm(step.T_world_sole.p[:2] - start.p[:2])
         for f in np.linspace(0.0, 1.0, 12):
             centre = first + f * (last - first)
-            done = float(np.linalg.norm(centre[:2] - start.p[:2]) / whole if whole > 1e-6 else 0.0
+            done = float(np.linalg.norm(centre[:2] - start.p[:2]) / whole) if whole > 1e-6 else 0.0
             yaw = start.yaw + done * wrapped(step.T_world_sole.yaw - start.yaw)
             points = Pose.from_xyz_rpy(centre, (0.0, 0.0, yaw)) @ np.column_stack((sole, np.zeros(len(sole))))
             ground = self.ground(points[:, :2], 0.0)
