@@ -20,7 +20,8 @@ _MILLIMETRES_PER_METRE = 1000.0
 def encoded_depth(image: DepthImage) -> rr.EncodedDepthImage:
     """A depth image as a PNG of millimetres, thinned by taking every nth pixel: depths must not be averaged."""
     stride = max(1, image.camera.width // _WIDTH)
-    millimetres = np.round(image.depth[::stride, ::stride] * _MILLIMETRES_PER_METRE).astype(np.uint16)
+    millimetres = np.round(image.depth[::stride, ::stride] * _MILLIMETRES_PER_METRE)
+    millimetres = np.minimum(millimetres, np.iinfo(np.uint16).max).astype(np.uint16)
     return rr.EncodedDepthImage(
         _encode(".png", millimetres), media_type="image/png", meter=_MILLIMETRES_PER_METRE, colormap="turbo"
     )
@@ -32,6 +33,18 @@ def encoded_picture(picture: NDArray[np.uint8]) -> rr.EncodedImage:
     return rr.EncodedImage(
         contents=_encode(".jpg", bgr, [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY]), media_type="image/jpeg"
     )
+
+
+def pinhole_of(image: DepthImage) -> tuple[rr.Pinhole, rr.Transform3D]:
+    """The camera of an image, and where it was."""
+    camera, T_world_camera = image.camera, image.T_world_camera
+    pinhole = rr.Pinhole(
+        focal_length=(camera.fx, camera.fy),
+        principal_point=(camera.cx, camera.cy),
+        resolution=(camera.width, camera.height),
+        image_plane_distance=0.25,
+    )
+    return pinhole, rr.Transform3D(translation=T_world_camera.p, mat3x3=T_world_camera.R)
 
 
 def _encode(suffix: str, pixels: NDArray[Any], options: Sequence[int] = ()) -> bytes:

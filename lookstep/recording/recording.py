@@ -18,7 +18,7 @@ from lookstep.moment import Moment
 from lookstep.recording import palette, scene
 from lookstep.recording.blueprint import TIMELINE, default_blueprint
 from lookstep.recording.columns import Columns
-from lookstep.recording.images import encoded_depth, encoded_picture
+from lookstep.recording.images import encoded_depth, encoded_picture, pinhole_of
 from sim_envs.robot import RobotDescription
 from sim_envs.worlds import KinematicWorld
 from skills.body_path import BodyPath, Goal, SubGoal
@@ -145,7 +145,7 @@ class Recording:
         match value:
             case PlanarRegions():
                 log(f"world/{key}/outlines", scene.region_outlines(value))
-                log(f"world/{key}/surfaces", scene.region_surfaces(value))
+                log(f"world/{key}/surfaces", scene.region_surfaces(value, scene.colors_by_place(value)))
             case RegionExtraction():
                 self._log_images(value)
             case FootstepPlan():
@@ -164,16 +164,11 @@ class Recording:
     def _log_images(self, extraction: RegionExtraction) -> None:
         self._stream.log("camera/depth", encoded_depth(extraction.image))
         stride = 2 if extraction.image.camera.width > _PICTURE_WIDTH else 1
-        self._stream.log("camera/regions", encoded_picture(debug_image(extraction, stride)))
-        camera, T_world_camera = extraction.image.camera, extraction.image.T_world_camera
-        pinhole = rr.Pinhole(
-            focal_length=(camera.fx, camera.fy),
-            principal_point=(camera.cx, camera.cy),
-            resolution=(camera.width, camera.height),
-            image_plane_distance=0.25,
+        self._stream.log(
+            "camera/regions",
+            encoded_picture(debug_image(extraction, stride, scene.colors_by_place(extraction.regions))),
         )
-        pose = rr.Transform3D(translation=T_world_camera.p, mat3x3=T_world_camera.R)
-        self._stream.log("world/camera", pinhole, pose)
+        self._stream.log("world/camera", *pinhole_of(extraction.image))
 
     def _log_tree(self, moment: Moment) -> None:
         for transition in moment.tree.transitions:

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 import mujoco
 import numpy as np
 import rerun as rr
+from numpy.typing import NDArray
 
 from lookstep.recording import palette
 from sim_envs.courses import Course
@@ -16,7 +17,7 @@ from sim_envs.sensors import GeomMesh, geom_mesh, geom_rgba
 from skills.body_path import BodyPath, Goal
 from skills.footsteps import Footstep, Side, Stance
 from skills.geometry import Array, Pose, convex_hull
-from skills.regions import PlanarRegion, PlanarRegions
+from skills.regions import PlanarRegions
 
 BoxPose = tuple[tuple[float, ...], tuple[float, ...]]
 
@@ -71,21 +72,23 @@ def region_outlines(regions: PlanarRegions) -> rr.LineStrips3D:
     return rr.LineStrips3D(strips, colors=[palette.REGION_EDGE] * len(strips), radii=0.004)
 
 
-def region_surfaces(regions: PlanarRegions) -> rr.Mesh3D | rr.Clear:
-    """The convex parts of every region as one mesh in the regions' colours."""
+def region_surfaces(regions: PlanarRegions, region_colors: NDArray[np.uint8]) -> rr.Mesh3D | rr.Clear:
+    """The convex parts of every region as one mesh in the regions' colours, (R, 3) RGB."""
     corners, colors = [], []
     for i, region in enumerate(regions.regions):
         fans = np.concatenate([_fan(part) for part in region.convex_parts_region])
         corners.append(_lifted(region.T_world_region, fans, _REGION_LIFT + _NEWER_LIFT * i))
-        colors.append(np.tile(np.array(_color(region), dtype=np.uint8), (len(fans), 1)))
+        colors.append(np.tile(region_colors[i], (len(fans), 1)))
     if not corners:
         return rr.Clear(recursive=False)
     return rr.Mesh3D(vertex_positions=np.concatenate(corners).astype(np.float32), vertex_colors=np.concatenate(colors))
 
 
-def _color(region: PlanarRegion) -> palette.RGBA:
-    center = region.hull_world.mean(axis=0)
-    return (*palette.region_color((float(center[0]), float(center[1]))), 255)
+def colors_by_place(regions: PlanarRegions) -> NDArray[np.uint8]:
+    """Colours that regions keep from frame to frame, because they follow from where the regions lie, (R, 3) RGB."""
+    centers = [region.hull_world.mean(axis=0) for region in regions.regions]
+    colors = [palette.region_color((float(center[0]), float(center[1]))) for center in centers]
+    return np.array(colors, dtype=np.uint8).reshape(-1, 3)
 
 
 def planned_soles(steps: Sequence[Footstep], sole: Array) -> rr.Mesh3D:

@@ -1,14 +1,16 @@
 """Planar regions out of depth images."""
 
-from skills.regions.debug_image import debug_image
+from skills.regions.debug_image import debug_image, region_colors
 from skills.regions.extraction import RegionExtraction, RejectedRegion, examine_regions, extract_regions
 from skills.regions.memory_parameters import MemoryParameters
 from skills.regions.parameters import RegionParameters
+from skills.regions.pieces import PixelKind, kind_of_pixels, piece_of_pixels
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 from skills.regions.region_memory import RegionMemory
 
 __all__ = [
     "MemoryParameters",
+    "PixelKind",
     "PlanarRegion",
     "PlanarRegions",
     "RegionExtraction",
@@ -18,4 +20,7 @@ __all__ = [
     "debug_image",
     "examine_regions",
     "extract_regions",
+    "kind_of_pixels",
+    "piece_of_pixels",
+    "region_colors",
 ]

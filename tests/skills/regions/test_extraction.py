@@ -13,7 +13,7 @@ from skills.geometry.camera import DepthImage, PinholeCamera
 from skills.geometry.capsule import Capsule
 from skills.geometry.polygon import contains_points, signed_area
 from skills.geometry.pose import Pose
-from skills.regions import PlanarRegions, RegionParameters, debug_image, examine_regions, extract_regions
+from skills.regions import PlanarRegions, RegionParameters, examine_regions, extract_regions
 
 HELD_OUT = (101, 102, 103)  # never used to choose a parameter
 SMALL = L515.scaled(0.3125)  # 320 x 240
@@ -191,17 +191,6 @@ def test_an_image_without_depth_has_no_regions(value):
     image = DepthImage(np.full((240, 320), value, np.float32), SMALL, Pose.identity(), 1.0, 7)
     found = extract_regions(image)
     assert (found.regions, found.time, found.frame_id) == ((), 1.0, 7)
-
-
-def test_debug_image_shows_regions_and_rejections_at_full_size():
-    view = ground(L515, 1.05, block(1.2, 0.0, 0.5, size=(0.2, 1.0, 0.6)))
-    extraction = examine_regions(with_noise(view.image, 0))
-    picture = debug_image(extraction)
-    assert picture.shape == (768, 1024, 3) and picture.dtype == np.uint8
-    saturation = picture.max(axis=2).astype(int) - picture.min(axis=2)
-    accepted = np.isin(extraction.labels, extraction.region_labels)
-    assert np.mean(saturation[accepted & (view.image.depth > 0)] > 60) > 0.95
-    assert np.all(saturation[~accepted] == 0)
 
 
 def test_parameters_out_of_range_are_refused():
