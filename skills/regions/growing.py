@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from skills.geometry.pose import Array
 from skills.kernels import kernel
+from skills.regions.noise_level import depth_noise
 from skills.regions.parameters import RegionParameters
 from skills.regions.patches import SUMS, Patches, cosine, fit_plane, misfit, off_plane
 
@@ -44,12 +45,14 @@ def grow_regions(patches: Patches, parameters: RegionParameters) -> PatchRegions
     order = order[: int(np.count_nonzero(np.isfinite(patches.sigma)))]
     capacity = len(order) // parameters.patches_min + 1
     sums, planes = np.zeros((capacity, SUMS)), np.zeros((capacity, 3))
-    link = (np.cos(parameters.link_angle), parameters.link_offset)
-    grow = (np.cos(parameters.grow_angle), parameters.grow_offset)
-    count = _grow(patches.sums, patches.planes, order, *link, *grow, parameters.patches_min, labels, sums, planes)
-    pixels = patches.size**2
-    _fill(patches.sums, planes, parameters.fill_offset, 0.5 * pixels, labels)
-    parents = _merge(labels, count, parameters.merge_offset, parameters.patches_min * pixels, sums, planes)
+    p, pixels = parameters, patches.size**2
+    off = np.zeros((rows, columns))
+    tilt = np.zeros((rows, columns))
+    _allow(patches.sums, patches.noise.law, pixels, patches.edge, p.noise_factor, off, tilt)
+    limits = np.array((p.link_angle, p.link_offset, p.grow_angle, p.grow_offset))
+    count = _grow(patches.sums, patches.planes, order, limits, off, tilt, p.patches_min, labels, sums, planes)
+    _fill(patches.sums, planes, p.fill_offset, off, 0.5 * pixels, labels)
+    parents = _merge(labels, count, p.merge_offset, p.noise_factor, patches.noise.law, pixels, sums, planes)
     roots, renumbered = np.unique(parents, return_inverse=True)
     lookup = np.append(renumbered, -1).astype(np.int32)
     sigma = np.array([fit_plane(sums[root], planes[root]) for root in roots])
@@ -57,14 +60,25 @@ def grow_regions(patches: Patches, parameters: RegionParameters) -> PatchRegions
 
 
 @kernel
+def _allow(sums: Array, noise: Array, pixels: float, edge: float, factor: float, off: Array, tilt: Array) -> None:
+    """How far noise may move the mean of each patch [m] and turn its plane, fitted to 3 x 3 patches [rad]."""
+    for row in range(off.shape[0]):
+        for column in range(off.shape[1]):
+            s = sums[row, column]
+            if s[0] > 0.0:
+                depth = s[0] / s[3]
+                off[row, column] = factor * depth_noise(noise, depth, pixels)
+                tilt[row, column] = off[row, column] / (np.sqrt(6.0) * edge * depth)
+
+
+@kernel
 def _grow(
     patch_sums: Array,
     patch_planes: Array,
     order: NDArray[np.int64],
-    link_cosine: float,
-    link_offset: float,
-    grow_cosine: float,
-    grow_offset: float,
+    limits: Array,
+    off: Array,
+    tilt: Array,
     patches_min: int,
     labels: Labels,
     sums: Array,
@@ -104,12 +118,14 @@ def _grow(
                 there = patch_planes[i, j]
                 s = patch_sums[i, j]
                 # A patch without a plane is not a number, and every test of it fails.
+                link_cosine = 1.0 - 0.5 * (limits[0] + tilt[i, j]) ** 2
+                grow_cosine = 1.0 - 0.5 * (limits[2] + tilt[i, j]) ** 2
                 if (
                     cosine(here, there) >= link_cosine
                     and cosine(plane, there) >= grow_cosine
-                    and abs(off_plane(s, plane)) <= grow_offset
-                    and abs(off_plane(s, here)) <= link_offset
-                    and abs(off_plane(patch_sums[row, column], there)) <= link_offset
+                    and abs(off_plane(s, plane)) <= limits[3] + off[i, j]
+                    and abs(off_plane(s, here)) <= limits[1] + off[i, j]
+                    and abs(off_plane(patch_sums[row, column], there)) <= limits[1] + off[i, j]
                 ):
                     seen[i, j] = seed + 1
                     queue[tail] = i * columns + j
@@ -123,7 +139,7 @@ def _grow(
             region[k] = 0.0
         for k in range(tail):
             row, column = queue[k] // columns, queue[k] % columns
-            if abs(off_plane(patch_sums[row, column], plane)) <= grow_offset:
+            if abs(off_plane(patch_sums[row, column], plane)) <= limits[3] + off[row, column]:
                 labels[row, column] = count
                 kept += 1
                 for m in range(10):
@@ -138,7 +154,7 @@ def _grow(
 
 
 @kernel
-def _fill(patch_sums: Array, planes: Array, offset: float, filled_min: float, labels: Labels) -> None:
+def _fill(patch_sums: Array, planes: Array, offset: float, off: Array, filled_min: float, labels: Labels) -> None:
     """Give patches without a region that of a neighbour whose plane they lie in, outwards from the regions."""
     rows, columns = labels.shape
     queue = np.empty(rows * columns, np.int64)
@@ -158,7 +174,10 @@ def _fill(patch_sums: Array, planes: Array, offset: float, filled_min: float, la
             j = column + (side == 2) - (side == 3)
             if i < 0 or j < 0 or i >= rows or j >= columns or labels[i, j] >= 0:
                 continue
-            if patch_sums[i, j, 0] >= filled_min and abs(off_plane(patch_sums[i, j], planes[label])) <= offset:
+            if (
+                patch_sums[i, j, 0] >= filled_min
+                and abs(off_plane(patch_sums[i, j], planes[label])) <= offset + off[i, j]
+            ):
                 labels[i, j] = label
                 queue[tail] = i * columns + j
                 tail += 1
@@ -166,7 +185,14 @@ def _fill(patch_sums: Array, planes: Array, offset: float, filled_min: float, la
 
 @kernel
 def _merge(
-    labels: Labels, count: int, merge_offset: float, smallest: float, sums: Array, planes: Array
+    labels: Labels,
+    count: int,
+    offset: float,
+    factor: float,
+    noise: Array,
+    pixels: float,
+    sums: Array,
+    planes: Array,
 ) -> NDArray[np.int32]:
     """Join regions at most two patches apart until none fits another; which region each one has become."""
     rows, columns = labels.shape
@@ -196,7 +222,8 @@ def _merge(
                     union[k] = sums[p, k] + sums[q, k]
                 fit_plane(union, plane)
                 # The plane of a small region is less certain, and more of its misfit is noise.
-                limit = merge_offset * (1.0 + smallest / min(sums[p, 0], sums[q, 0]))
+                patches = min(sums[p, 0], sums[q, 0]) / pixels
+                limit = offset + factor * depth_noise(noise, union[0] / union[3], pixels) * np.sqrt(3.0 / patches)
                 if misfit(sums[p], planes[p], plane) > limit or misfit(sums[q], planes[q], plane) > limit:
                     continue
                 for k in range(10):

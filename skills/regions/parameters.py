@@ -12,7 +12,8 @@ class RegionParameters:
     """How a depth image is cut into planar regions.
 
     Blocks of a field touch, and links from patch to patch chain across their seams. So the tolerances to the plane of
-    the whole region decide, not those between neighbours: a level block parts from one tilted by 11 degrees.
+    the whole region decide, not those between neighbours: a level block parts from one tilted by 11 degrees. Limits
+    marked by * hold without noise; noise_factor times the standard deviation that the image's noise causes is added.
     """
 
     patch_size: int = parameter(
@@ -22,39 +23,31 @@ class RegionParameters:
         0.011, unit="rad", minimum=0.002, maximum=0.1, meaning="edge of a patch as seen from the camera"
     )
     depth_max: float = parameter(4.0, unit="m", minimum=0.2, maximum=20.0, meaning="deeper pixels are ignored")
+    noise_factor: float = parameter(
+        3.0, unit="1", minimum=0.5, maximum=10.0, meaning="standard deviations of the image's noise that limits allow"
+    )
     link_angle: float = parameter(
-        np.deg2rad(8.0), unit="rad", minimum=0.001, maximum=1.0, meaning="normals of neighbouring patches that link"
+        np.deg2rad(1.0), unit="rad", minimum=0.0, maximum=1.0, meaning="normals of neighbouring patches that link *"
     )
     link_offset: float = parameter(
-        0.006, unit="m", minimum=0.0005, maximum=0.1, meaning="offset of neighbouring patches from each other's plane"
+        0.002, unit="m", minimum=0.0, maximum=0.1, meaning="offset of neighbouring patches from each other's plane *"
     )
     grow_angle: float = parameter(
-        np.deg2rad(9.0), unit="rad", minimum=0.001, maximum=1.0, meaning="normal of a patch and of its region"
+        np.deg2rad(2.0), unit="rad", minimum=0.0, maximum=1.0, meaning="normal of a patch and of its region *"
     )
     grow_offset: float = parameter(
-        0.005, unit="m", minimum=0.0005, maximum=0.1, meaning="offset of a patch from the plane of its region"
+        0.001, unit="m", minimum=0.0, maximum=0.1, meaning="offset of a patch from the plane of its region *"
     )
     fill_offset: float = parameter(
-        0.004,
-        unit="m",
-        minimum=0.0005,
-        maximum=0.1,
-        meaning="offset at which a patch joins without regard to its normal",
+        0.0, unit="m", minimum=0.0, maximum=0.1, meaning="offset at which a patch joins without regard to its normal *"
     )
     merge_offset: float = parameter(
-        0.0018,
-        unit="m",
-        minimum=0.0005,
-        maximum=0.1,
-        meaning="mean distance of regions that merge from their common plane",
+        0.001, unit="m", minimum=0.0, maximum=0.1, meaning="mean distance of regions from the plane they merge to *"
     )
-    patch_sigma_max: float = parameter(
-        0.012, unit="m", minimum=0.001, maximum=0.1, meaning="spread of a flat patch's pixels about its plane"
+    pixel_offset: float = parameter(
+        0.002, unit="m", minimum=0.0, maximum=0.1, meaning="depth of pixels of a region from its plane *"
     )
     patches_min: int = parameter(12, unit="1", minimum=1, maximum=10000, meaning="fewer patches are no region")
-    pixel_offset: float = parameter(
-        0.012, unit="m", minimum=0.001, maximum=0.1, meaning="pixels further from a plane do not belong to it"
-    )
     bend_max: float = parameter(
         0.005, unit="m", minimum=0.0005, maximum=0.1, meaning="spread of patch means about a region; more is curved"
     )

@@ -9,7 +9,7 @@ q = (a, b, c) with w = a x + b y + c: its normal away from the camera is q / |q|
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from skills.geometry.camera import DepthImage, PinholeCamera
 from skills.geometry.pose import Array
 from skills.kernels import kernel
+from skills.regions.noise_level import NoiseLevel, depth_noise, estimate_noise
 from skills.regions.parameters import RegionParameters
 
 SUMS = 10
@@ -28,31 +29,51 @@ class Patches:
     """The patch grid of a depth image, in normalised image coordinates.
 
     Attributes:
-        size: edge of a patch [px], even.
+        size: edge of a patch [px].
+        edge: the same as a length at depth 1 [1].
         sums: sums over the valid pixels of each patch, (rows, columns, 10).
         planes: plane of each patch, (rows, columns, 3) [1/m]; not a number where it has none.
         sigma: spread of the pixels about that plane, (rows, columns) [m]; infinite where it has none.
+        noise: how noisy the image is.
     """
 
     size: int
+    edge: float
     sums: Array
     planes: Array
     sigma: Array
+    noise: NoiseLevel
 
 
-def fit_patches(image: DepthImage, parameters: RegionParameters) -> Patches:
-    """Fit a plane to every patch of a depth image; patches on the robot's own body get none."""
+def fit_patches(image: DepthImage, parameters: RegionParameters, noise: NoiseLevel | None = None) -> Patches:
+    """Fit a plane to every patch of a depth image; patches on the robot's own body get none.
+
+    Args:
+        image: the depth image.
+        parameters: tolerances and limits.
+        noise: of the camera, where it is known; measured on the image where it is not.
+    """
     camera = image.camera
     size = patch_size(camera, parameters)
     rows, columns = camera.height // size, camera.width // size
     sums = np.zeros((rows, columns, SUMS))
-    planes = np.full((rows, columns, 3), np.nan)
-    sigma = np.full((rows, columns), np.inf)
     _sum_patches(image.depth, intrinsics(camera), camera.near, min(camera.far, parameters.depth_max), size, sums)
     if image.body_world:
         _drop_body(sums, _capsules_in_camera(image))
-    _fit_windows(sums, parameters.patch_sigma_max, parameters.grow_offset, planes, sigma)
-    return Patches(size, sums, planes, sigma)
+    edge = size / np.sqrt(camera.fx * camera.fy)
+    nothing = np.empty((0, 0, 3))
+    patches = Patches(size, float(edge), sums, nothing, nothing[..., 0], noise or estimate_noise(sums, size**2))
+    return fit_patch_planes(patches, sums, parameters)
+
+
+def fit_patch_planes(patches: Patches, sums: Array, parameters: RegionParameters) -> Patches:
+    """The same grid of patches with other sums, and planes fitted to these."""
+    rows, columns = sums.shape[:2]
+    planes = np.full((rows, columns, 3), np.nan)
+    sigma = np.full((rows, columns), np.inf)
+    limits = np.array((parameters.noise_factor, parameters.pixel_offset, parameters.grow_offset))
+    _fit_windows(sums, patches.noise.law, patches.size**2, limits, planes, sigma)
+    return replace(patches, sums=sums, planes=planes, sigma=sigma)
 
 
 def _capsules_in_camera(image: DepthImage) -> Array:
@@ -161,15 +182,13 @@ def fit_plane(s: Array, plane: Array) -> float:
 
 
 @kernel
-def _fit_windows(sums: Array, sigma_max: float, offset: float, planes: Array, sigma: Array) -> None:
+def _fit_windows(sums: Array, noise: Array, pixels: float, limits: Array, planes: Array, sigma: Array) -> None:
     rows, columns = sums.shape[0], sums.shape[1]
     window = np.empty(10)
     fit = np.empty((rows, columns, 3))
     spread = np.empty((rows, columns))
-    full = 0.0
     for row in range(rows):
         for column in range(columns):
-            full = max(full, sums[row, column, 0])
             spread[row, column] = np.inf
     for row in range(1, rows - 1):
         for column in range(1, columns - 1):
@@ -179,14 +198,15 @@ def _fit_windows(sums: Array, sigma_max: float, offset: float, planes: Array, si
                 for j in range(column - 1, column + 2):
                     for k in range(10):
                         window[k] += sums[i, j, k]
-            if window[0] >= 4.5 * full:
+            if window[0] >= 4.5 * pixels:
                 spread[row, column] = fit_plane(window, fit[row, column])
     for row in range(rows):
         for column in range(columns):
             s = sums[row, column]
-            if s[0] < 0.5 * full:
+            if s[0] < 0.5 * pixels:
                 continue
-            best, least = -1, sigma_max
+            depth = s[0] / s[3]
+            best, least = -1, limits[1] + limits[0] * depth_noise(noise, depth, 1.0)
             for i in range(max(row - 1, 0), min(row + 2, rows)):
                 for j in range(max(column - 1, 0), min(column + 2, columns)):
                     if spread[i, j] < least:
@@ -194,7 +214,7 @@ def _fit_windows(sums: Array, sigma_max: float, offset: float, planes: Array, si
             if best < 0:
                 continue
             plane = fit[best // columns, best % columns]
-            if abs(off_plane(s, plane)) > offset:
+            if abs(off_plane(s, plane)) > limits[2] + limits[0] * depth_noise(noise, depth, pixels):
                 continue
             for k in range(3):
                 planes[row, column, k] = plane[k]

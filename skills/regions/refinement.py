@@ -1,10 +1,8 @@
-"""Labels of pixels, and planes fitted once more to them.
+"""From regions of patches to pixels: labels, a second look at what is left, and planes fitted once more.
 
-A patch inside a region hands its label to its pixels. In the band along borders each pixel takes, of the regions in the
-3 x 3 patches around it, the plane that a small window about it fits best. What a pixel adds to the window's misfit is
-capped at a tolerance: across a depth edge the majority wins, exactly at a straight one; along a crease, where two
-planes meet, the misfits cross where the planes do, and the window averages the noise away. The planes are then fitted
-again to all pixels but those next to a border, patch by patch inside a region.
+Pixels are labelled along the borders of the regions. What fits no plane there, and what had no region at all, is cut
+into patches once more, now without the pixels that are spoken for: so faces narrower than the window of a patch come
+out between two regions. All planes are then fitted again to all pixels but those next to a border.
 """
 
 from __future__ import annotations
@@ -17,12 +15,12 @@ from numpy.typing import NDArray
 from skills.geometry.camera import DepthImage
 from skills.geometry.pose import Array
 from skills.kernels import kernel
-from skills.regions.growing import PatchRegions
+from skills.regions.growing import PatchRegions, grow_regions
+from skills.regions.noise_level import NoiseLevel, depth_noise
 from skills.regions.parameters import RegionParameters
-from skills.regions.patches import SUMS, Patches, fit_plane, intrinsics, off_plane
-
-PixelLabels = NDArray[np.int16]
-_EROSION = 2  # pixels this near to another label are left out of the last fit [px]
+from skills.regions.patches import SUMS, Patches, fit_patch_planes, fit_plane, intrinsics, off_plane
+from skills.regions.pixel_labels import LANES, PixelLabels, label_pixels
+from skills.regions.pixel_sums import sum_pixels
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -34,33 +32,47 @@ class Segmentation:
         planes: plane of each region, (R, 3) [1/m], as in `Patches`.
         sigma: spread of each region's pixels about its plane, (R,) [m].
         bend: spread of the means of its inner patches about its plane, (R,) [m]; infinite where it has no plane.
+        noise: how noisy the image is.
     """
 
     labels: PixelLabels
     planes: Array
     sigma: Array
     bend: Array
+    noise: NoiseLevel
 
 
 def refine_regions(
     image: DepthImage, patches: Patches, coarse: PatchRegions, parameters: RegionParameters
 ) -> Segmentation:
     """Label the pixels of an image whose patches are labelled, and fit the planes to them."""
-    lens = intrinsics(image.camera)
-    labels = np.full(image.depth.shape, -1, dtype=np.int16)
-    limits = np.array([image.camera.near, min(image.camera.far, parameters.depth_max), parameters.pixel_offset])
+    camera = image.camera
+    lens = intrinsics(camera)
+    near, far = camera.near, min(camera.far, parameters.depth_max)
+    limits = np.array([near, far, parameters.pixel_offset, parameters.noise_factor, *patches.noise.law])
+    depth = image.depth
+    labels, sure = np.full((2, *depth.shape), -1, dtype=np.int16)
     inner = np.zeros(coarse.labels.shape, dtype=np.bool_)
-    pixel_planes = _planes_in_pixels(coarse.planes, lens)
-    _label_pixels(image.depth, patches.size, limits, patches.sums, coarse.labels, pixel_planes, inner, labels)
-    planes, sigma, bend = coarse.planes.copy(), np.zeros(len(coarse.planes)), np.zeros(len(coarse.planes))
-    sums = np.zeros((len(planes), SUMS))
-    _sum_inner(patches.sums, coarse.labels, inner, sums)
-    _sum_band(image.depth, patches.size, limits, lens, inner, labels, pixel_planes, sums)
-    _refit(patches.sums, coarse.labels, inner, sums, planes, sigma, bend)
-    return Segmentation(labels, planes, sigma, bend)
+    patch_depth = patches.sums[..., 0] / np.maximum(patches.sums[..., 3], 1e-9)
+    planes, layers = coarse.planes, coarse.labels[None]
+    label_pixels(depth, patches.size, limits, patch_depth, layers, _in_pixels(planes, lens), inner, labels, sure)
+    left = np.zeros(patches.sums.shape)
+    if _sum_left(depth, patches.size, limits, lens, patches.sums, inner, sure, left):
+        rest = grow_regions(fit_patch_planes(patches, left, parameters), parameters)
+        if len(rest.planes):
+            planes = np.concatenate((planes, rest.planes))
+            found = np.where(rest.labels >= 0, rest.labels + len(coarse.planes), -1).astype(np.int32)
+            layers = np.stack((coarse.labels, found))
+            pixel_planes = _in_pixels(planes, lens)
+            label_pixels(depth, patches.size, limits, patch_depth, layers, pixel_planes, inner, labels, sure)
+    planes = np.array(planes)
+    sums, sigma, bend = np.zeros((len(planes), SUMS)), np.zeros(len(planes)), np.zeros(len(planes))
+    _sum_regions(depth, patches.size, limits, lens, patches.sums, inner, labels, planes, sums)
+    _refit(patches.sums, patches.size, limits[4:], inner, labels, sums, planes, sigma, bend)
+    return Segmentation(labels, planes, sigma, bend, patches.noise)
 
 
-def _planes_in_pixels(planes: Array, lens: Array) -> NDArray[np.float32]:
+def _in_pixels(planes: Array, lens: Array) -> NDArray[np.float32]:
     """Planes as inverse depth over pixel coordinates, w = a u + b v + c, (R, 3)."""
     fx, fy, cx, cy = lens
     a, b = planes[:, 0] / fx, planes[:, 1] / fy
@@ -68,199 +80,101 @@ def _planes_in_pixels(planes: Array, lens: Array) -> NDArray[np.float32]:
 
 
 @kernel
-def _label_pixels(
-    depth: NDArray[np.float32],
-    size: int,
-    limits: Array,
-    patch_sums: Array,
-    patch_labels: NDArray[np.int32],
-    planes: NDArray[np.float32],
-    inner: NDArray[np.bool_],
-    labels: PixelLabels,
-) -> None:
-    """Label the pixels of patches that have a region or a neighbour with one; tell which patches are inner ones."""
-    rows, columns = patch_labels.shape
-    height, width = depth.shape
-    radius = max(size // 4, 1)
-    candidates = np.empty(9, np.int32)
-    edge = size + 2 * radius
-    costs = np.empty((9, edge, edge), np.float32)
-    valid = np.empty((edge, edge), np.float32)
-    column_sums = np.empty((10, edge), np.float32)
-    near, far = np.float32(limits[0]), np.float32(limits[1])
-    one, zero = np.float32(1.0), np.float32(0.0)
-    for row in range(rows):
-        for column in range(columns):
-            count, uniform = 0, True
-            here = patch_labels[row, column]
-            for i in range(max(row - 1, 0), min(row + 2, rows)):
-                for j in range(max(column - 1, 0), min(column + 2, columns)):
-                    label = patch_labels[i, j]
-                    uniform &= label == here
-                    known = label < 0
-                    for k in range(count):
-                        known |= candidates[k] == label
-                    if not known:
-                        candidates[count] = label
-                        count += 1
-            if count == 0:
-                continue
-            v0, u0 = row * size, column * size
-            v1, u1 = min(v0 + size, height), min(u0 + size, width)
-            if uniform:
-                inner[row, column] = True
-                for v in range(v0, v1):
-                    for u in range(u0, u1):
-                        labels[v, u] = here
-                continue
-            top, left = max(v0 - radius, 0), max(u0 - radius, 0)
-            bottom, right = min(v1 + radius, height), min(u1 + radius, width)
-            deepest = patch_sums[row, column, 0] / patch_sums[row, column, 3] if patch_sums[row, column, 3] > 0 else 1.0
-            cap = np.float32((limits[2] / deepest) ** 2)
-            for v in range(top, bottom):
-                for u in range(left, right):
-                    z = depth[v, u]
-                    valid[v - top, u - left] = one if (z >= near) & (z <= far) else zero
-            for k in range(count):
-                a, b, c = planes[candidates[k]]
-                for v in range(top, bottom):
-                    base = b * np.float32(v) + c
-                    for u in range(left, right):
-                        f = depth[v, u] * (a * np.float32(u) + base) - one
-                        e = min(f * f, cap)
-                        costs[k, v - top, u - left] = e if valid[v - top, u - left] > zero else zero
-            _choose(
-                candidates,
-                count,
-                costs,
-                valid,
-                cap,
-                radius,
-                (top, left, bottom, right),
-                (v0, u0, v1, u1),
-                column_sums,
-                labels,
-            )
-
-
-@kernel
-def _choose(
-    candidates: NDArray[np.int32],
-    count: int,
-    costs: NDArray[np.float32],
-    valid: NDArray[np.float32],
-    cap: np.float32,
-    radius: int,
-    outer: tuple[int, int, int, int],
-    box: tuple[int, int, int, int],
-    column_sums: NDArray[np.float32],
-    labels: PixelLabels,
-) -> None:
-    """Give each pixel of a patch the candidate that the window about it fits best."""
-    top, left, bottom, right = outer
-    v0, u0, v1, u1 = box
-    zero = np.float32(0.0)
-    wide = right - left
-    for k in range(count + 1):
-        for j in range(wide):
-            column_sums[k, j] = zero
-    added = top
-    for v in range(v0, v1):
-        while added < min(v + radius + 1, bottom):
-            for k in range(count):
-                for j in range(wide):
-                    column_sums[k, j] += costs[k, added - top, j]
-            for j in range(wide):
-                column_sums[count, j] += valid[added - top, j]
-            added += 1
-        gone = v - radius - 1
-        if gone >= top:
-            for k in range(count):
-                for j in range(wide):
-                    column_sums[k, j] -= costs[k, gone - top, j]
-            for j in range(wide):
-                column_sums[count, j] -= valid[gone - top, j]
-        for u in range(u0, u1):
-            first, last = max(u - radius, left) - left, min(u + radius + 1, right) - left
-            total = zero
-            for j in range(first, last):
-                total += column_sums[count, j]
-            if total < 4.5:
-                continue
-            least = np.float32(0.5) * cap * total
-            for k in range(count):
-                cost = zero
-                for j in range(first, last):
-                    cost += column_sums[k, j]
-                if cost < least:
-                    least = cost
-                    labels[v, u] = candidates[k]
-
-
-@kernel
-def _sum_inner(patch_sums: Array, patch_labels: NDArray[np.int32], inner: NDArray[np.bool_], sums: Array) -> None:
-    for row in range(inner.shape[0]):
-        for column in range(inner.shape[1]):
-            if inner[row, column]:
-                s = sums[patch_labels[row, column]]
-                for k in range(10):
-                    s[k] += patch_sums[row, column, k]
-
-
-@kernel
-def _sum_band(
+def _sum_left(
     depth: NDArray[np.float32],
     size: int,
     limits: Array,
     lens: Array,
+    patch_sums: Array,
     inner: NDArray[np.bool_],
-    labels: PixelLabels,
-    planes: NDArray[np.float32],
-    sums: Array,
-) -> None:
-    """Add the pixels of the band that lie in their region's plane and next to no border."""
+    sure: PixelLabels,
+    left: Array,
+) -> bool:
+    """Sums over the pixels of each patch that are in no region or at odds with theirs; whether there are any."""
     rows, columns = inner.shape
     height, width = depth.shape
+    lanes = np.empty((6, LANES), np.float32)
+    nowhere = np.zeros(3)
+    found = False
     for row in range(rows):
         for column in range(columns):
-            if inner[row, column]:
+            if inner[row, column] or patch_sums[row, column, 0] == 0.0:
                 continue
-            for v in range(max(row * size, _EROSION), min((row + 1) * size, height - _EROSION)):
-                y = (v - lens[3]) / lens[1]
-                for u in range(max(column * size, _EROSION), min((column + 1) * size, width - _EROSION)):
+            v0, u0 = row * size, column * size
+            v1, u1 = min(v0 + size, height), min(u0 + size, width)
+            bare = 0
+            for v in range(v0, v1):
+                for u in range(u0, u1):
+                    bare += sure[v, u] < 0
+            if bare == (v1 - v0) * (u1 - u0):
+                for k in range(10):
+                    left[row, column, k] = patch_sums[row, column, k]
+            elif bare > 0:
+                allowed = (limits[0], limits[1], np.inf)
+                sum_pixels(depth, sure, -1, (v0, u0, v1, u1), lens, nowhere, allowed, lanes, left[row, column])
+            found |= left[row, column, 0] > 0.0
+    return found
+
+
+@kernel
+def _sum_regions(
+    depth: NDArray[np.float32],
+    size: int,
+    limits: Array,
+    lens: Array,
+    patch_sums: Array,
+    inner: NDArray[np.bool_],
+    labels: PixelLabels,
+    planes: Array,
+    sums: Array,
+) -> None:
+    """Sums over the pixels of each region that lie in its plane."""
+    rows, columns = inner.shape
+    height, width = depth.shape
+    lanes = np.empty((6, LANES), np.float32)
+    found = np.empty(size * size, np.int16)
+    for row in range(rows):
+        for column in range(columns):
+            v0, u0 = row * size, column * size
+            if inner[row, column]:
+                for k in range(10):
+                    sums[labels[v0, u0], k] += patch_sums[row, column, k]
+                continue
+            s = patch_sums[row, column]
+            if s[0] == 0.0:
+                continue
+            v1, u1 = min(v0 + size, height), min(u0 + size, width)
+            mean_depth = s[0] / s[3]
+            allowed = (limits[2] + limits[3] * depth_noise(limits[4:], mean_depth, 1.0)) / mean_depth
+            count = 0
+            before = np.int16(-1)
+            for v in range(v0, v1):
+                for u in range(u0, u1):
                     label = labels[v, u]
-                    z = depth[v, u]
-                    if label < 0 or not (z >= limits[0] and z <= limits[1]):
+                    if label == before or label < 0:
                         continue
-                    if (
-                        labels[v - _EROSION, u] != label
-                        or labels[v + _EROSION, u] != label
-                        or labels[v, u - _EROSION] != label
-                        or labels[v, u + _EROSION] != label
-                    ):
-                        continue
-                    f = z * (planes[label, 0] * u + planes[label, 1] * v + planes[label, 2]) - 1.0
-                    if abs(f) * z > limits[2]:
-                        continue
-                    w, x = 1.0 / z, (u - lens[2]) / lens[0]
-                    s = sums[label]
-                    s[0] += 1.0
-                    s[1] += x
-                    s[2] += y
-                    s[3] += w
-                    s[4] += x * x
-                    s[5] += x * y
-                    s[6] += y * y
-                    s[7] += x * w
-                    s[8] += y * w
-                    s[9] += w * w
+                    before = label
+                    known = False
+                    for k in range(count):
+                        known |= found[k] == label
+                    if not known:
+                        found[count] = label
+                        count += 1
+            for k in range(count):
+                label = found[k]
+                box = (v0, u0, v1, u1)
+                sum_pixels(
+                    depth, labels, label, box, lens, planes[label], (limits[0], limits[1], allowed), lanes, sums[label]
+                )
 
 
 @kernel
 def _refit(
     patch_sums: Array,
-    patch_labels: NDArray[np.int32],
+    size: int,
+    noise: Array,
     inner: NDArray[np.bool_],
+    labels: PixelLabels,
     sums: Array,
     planes: Array,
     sigma: Array,
@@ -276,7 +190,7 @@ def _refit(
     for row in range(inner.shape[0]):
         for column in range(inner.shape[1]):
             if inner[row, column] and patch_sums[row, column, 0] > 0.0:
-                label = patch_labels[row, column]
+                label = labels[row * size, column * size]
                 count[label] += 1.0
                 bend[label] += off_plane(patch_sums[row, column], planes[label]) ** 2
     for label in range(planes.shape[0]):

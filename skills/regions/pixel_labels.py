@@ -1,0 +1,224 @@
+"""Labels of pixels out of labels of patches.
+
+A patch inside a region hands its label to its pixels. In the band along borders each pixel takes, of the regions in the
+3 x 3 patches around it, the plane that the 5 x 5 window about it fits best. What a pixel adds to a window's misfit is
+capped: across a depth edge the majority wins, exactly at a straight one; along a crease the misfits of two planes cross
+where the planes do, and the window averages the noise away. A pixel is at odds where no plane fits its window within
+the noise: there may be something that the patches were too coarse to see.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skills.geometry.pose import Array
+from skills.kernels import kernel
+from skills.regions.noise_level import depth_noise
+
+PixelLabels = NDArray[np.int16]
+LANES = 16  # pixels of a row that are worked on at a time
+RADIUS = 2  # of the window about a pixel [px]; its sums are written out for five columns and rows
+_VALID_MIN = 4.5  # a window with fewer valid pixels gives no label
+
+
+@kernel
+def label_pixels(
+    depth: NDArray[np.float32],
+    size: int,
+    limits: Array,
+    patch_depth: Array,
+    patch_labels: NDArray[np.int32],
+    planes: NDArray[np.float32],
+    inner: NDArray[np.bool_],
+    labels: PixelLabels,
+    sure: PixelLabels,
+) -> None:
+    """Label the pixels of all patches near the last layer of regions.
+
+    Args:
+        depth: the image.
+        size: edge of a patch [px].
+        limits: nearest and farthest valid depth, pixel offset, noise factor and the law of the noise.
+        patch_depth: mean depth of each patch, (rows, columns).
+        patch_labels: one or two layers of regions, (layers, rows, columns).
+        planes: w = a u + b v + c over pixels, (R, 3).
+        inner: out, whether a patch lies inside a region.
+        labels: out, region of each pixel; -1 for none.
+        sure: out, the same less the pixels at odds.
+    """
+    layers, rows, columns = patch_labels.shape
+    height, width = depth.shape
+    near, far = np.float32(limits[0]), np.float32(limits[1])
+    candidates = np.empty(9 * layers, np.int32)
+    tall = size + 2 * RADIUS
+    # Blocks of a few rows of LANES pixels lie in memory in one piece, so that each loop over them runs in vectors.
+    block = np.zeros(tall * LANES, np.float32)
+    right, down = np.empty(tall * LANES, np.float32), np.empty(tall * LANES, np.float32)
+    for k in range(tall * LANES):
+        right[k], down[k] = k % LANES, k // LANES
+    costs = np.zeros(tall * LANES, np.float32)
+    column_sums = np.zeros(size * LANES + 2 * RADIUS, np.float32)
+    least, odd = np.zeros(size * LANES, np.float32), np.zeros(size * LANES, np.float32)
+    chosen = np.zeros(size * LANES, np.int16)
+    for row in range(rows):
+        for column in range(columns):
+            uniform, near_last = _survey(patch_labels, row, column)
+            if not near_last:
+                continue
+            v0, u0 = row * size, column * size
+            v1, u1 = min(v0 + size, height), min(u0 + size, width)
+            inner[row, column] = uniform
+            if uniform:
+                label = np.int16(max(patch_labels[0, row, column], patch_labels[layers - 1, row, column]))
+                for v in range(v0, v1):
+                    for u in range(u0, u1):
+                        labels[v, u] = label
+                        sure[v, u] = label
+                continue
+            count = _candidates(patch_labels, row, column, candidates)
+            cap, none, none_sure = _misfits(limits, max(patch_depth[row, column], limits[0]))
+            for left in range(u0, u1, LANES - 2 * RADIUS):
+                _load(depth, v0 - RADIUS, left - RADIUS, near, far, block)
+                _start(block, none, none_sure, costs, column_sums, least, odd, chosen)
+                for k in range(count):
+                    a, b, c = planes[candidates[k]]
+                    corner = a * np.float32(left - RADIUS) + b * np.float32(v0 - RADIUS) + c
+                    _compete(block, right, down, a, b, corner, cap, costs, column_sums, least, chosen, candidates[k])
+                for v in range(v0, v1):
+                    first = (v - v0) * LANES - left
+                    for u in range(left, min(left + LANES - 2 * RADIUS, u1)):
+                        labels[v, u] = chosen[first + u]
+                        sure[v, u] = chosen[first + u] if least[first + u] < odd[first + u] else -1
+
+
+@kernel
+def _misfits(limits: Array, depth: float) -> tuple[np.float32, np.float32, np.float32]:
+    """Squares of relative depth error: the cap, the mean that leaves a pixel bare, the mean that puts it at odds."""
+    offset, factor = limits[2], limits[3]
+    pixel, shared = depth_noise(limits[4:], depth, 1.0), depth_noise(limits[4:], depth, 1e12)
+    cap = (offset + factor * pixel) ** 2
+    spread = 1.0 + factor * np.sqrt(2.0) / (2 * RADIUS + 1)  # of a mean of squares over a window
+    odd = offset * offset + spread * (pixel * pixel - shared * shared) + (factor * shared) ** 2
+    scale = 1.0 / (depth * depth)
+    return np.float32(cap * scale), np.float32(0.5 * cap * scale), np.float32(odd * scale)
+
+
+@kernel
+def _survey(patch_labels: NDArray[np.int32], row: int, column: int) -> tuple[bool, bool]:
+    """Whether all 3 x 3 patches around one have the same single region, and whether the last layer has one there."""
+    layers, rows, columns = patch_labels.shape
+    last = layers - 1
+    here, above = patch_labels[0, row, column], patch_labels[last, row, column]
+    uniform = (here >= 0) != (above >= 0) if layers > 1 else here >= 0
+    near_last = False
+    for i in range(max(row - 1, 0), min(row + 2, rows)):
+        for j in range(max(column - 1, 0), min(column + 2, columns)):
+            uniform &= (patch_labels[0, i, j] == here) & (patch_labels[last, i, j] == above)
+            near_last |= patch_labels[last, i, j] >= 0
+    return uniform, near_last
+
+
+@kernel
+def _candidates(patch_labels: NDArray[np.int32], row: int, column: int, candidates: NDArray[np.int32]) -> int:
+    """List the regions in the 3 x 3 patches around one; their number."""
+    layers, rows, columns = patch_labels.shape
+    count = 0
+    for layer in range(layers):
+        for i in range(max(row - 1, 0), min(row + 2, rows)):
+            for j in range(max(column - 1, 0), min(column + 2, columns)):
+                label = patch_labels[layer, i, j]
+                known = label < 0
+                for k in range(count):
+                    known |= candidates[k] == label
+                if not known:
+                    candidates[count] = label
+                    count += 1
+    return count
+
+
+@kernel
+def _load(
+    depth: NDArray[np.float32], top: int, left: int, near: np.float32, far: np.float32, block: NDArray[np.float32]
+) -> None:
+    """Copy a block of depth; 0 where there is none."""
+    height, width = depth.shape
+    zero = np.float32(0.0)
+    for i in range(block.shape[0] // LANES):
+        v, first = top + i, i * LANES
+        if v < 0 or v >= height:
+            for j in range(LANES):
+                block[first + j] = zero
+        elif left >= 0 and left + LANES <= width:
+            for j in range(LANES):
+                z = depth[v, left + j]
+                block[first + j] = z if (z >= near) & (z <= far) else zero
+        else:
+            for j in range(LANES):
+                u = left + j
+                z = depth[v, u] if u >= 0 and u < width else zero
+                block[first + j] = z if (z >= near) & (z <= far) else zero
+
+
+@kernel
+def _start(
+    block: NDArray[np.float32],
+    none: np.float32,
+    none_sure: np.float32,
+    costs: NDArray[np.float32],
+    column_sums: NDArray[np.float32],
+    least: NDArray[np.float32],
+    odd: NDArray[np.float32],
+    chosen: NDArray[np.int16],
+) -> None:
+    """What misfit leaves pixels without a label and what puts them at odds; no label fits where few are valid."""
+    zero, one, bare = np.float32(0.0), np.float32(1.0), np.int16(-1)
+    enough, refused = np.float32(_VALID_MIN), np.float32(-1.0)
+    for k in range(block.shape[0]):
+        costs[k] = one if block[k] > zero else zero
+    _add_rows(costs, column_sums)
+    for k in range(least.shape[0]):
+        valid = column_sums[k] + column_sums[k + 1] + column_sums[k + 2] + column_sums[k + 3] + column_sums[k + 4]
+        least[k] = none * valid if valid >= enough else refused
+        odd[k] = none_sure * valid
+        chosen[k] = bare
+
+
+@kernel
+def _compete(
+    block: NDArray[np.float32],
+    right: NDArray[np.float32],
+    down: NDArray[np.float32],
+    a: np.float32,
+    b: np.float32,
+    corner: np.float32,
+    cap: np.float32,
+    costs: NDArray[np.float32],
+    column_sums: NDArray[np.float32],
+    least: NDArray[np.float32],
+    chosen: NDArray[np.int16],
+    label: int,
+) -> None:
+    """Give a label to the pixels whose windows its plane fits better than any before."""
+    zero, one, mine = np.float32(0.0), np.float32(1.0), np.int16(label)
+    for k in range(block.shape[0]):
+        z = block[k]
+        off = z * (a * right[k] + b * down[k] + corner) - one
+        square = off * off
+        square = square if square < cap else cap
+        costs[k] = square if z > zero else zero
+    _add_rows(costs, column_sums)
+    for k in range(least.shape[0]):
+        cost = column_sums[k] + column_sums[k + 1] + column_sums[k + 2] + column_sums[k + 3] + column_sums[k + 4]
+        better = cost < least[k]
+        least[k] = cost if better else least[k]
+        chosen[k] = mine if better else chosen[k]
+
+
+@kernel
+def _add_rows(costs: NDArray[np.float32], column_sums: NDArray[np.float32]) -> None:
+    """Sums of five rows each."""
+    for k in range(costs.shape[0] - 4 * LANES):
+        column_sums[k] = (
+            costs[k] + costs[k + LANES] + costs[k + 2 * LANES] + costs[k + 3 * LANES] + costs[k + 4 * LANES]
+        )
