@@ -51,7 +51,7 @@ def refine_regions(
     near, far = camera.near, min(camera.far, parameters.depth_max)
     limits = np.array([near, far, parameters.pixel_offset, parameters.noise_factor, *patches.noise.law])
     depth = image.depth
-    labels, sure = np.full((2, *depth.shape), -1, dtype=np.int16)
+    labels, sure = np.full(depth.shape, -1, dtype=np.int16), np.full(depth.shape, -1, dtype=np.int16)
     inner = np.zeros(coarse.labels.shape, dtype=np.bool_)
     patch_depth = patches.sums[..., 0] / np.maximum(patches.sums[..., 3], 1e-9)
     planes, layers = coarse.planes, coarse.labels[None]
