@@ -8,6 +8,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING
 
+from lookstep.bench.footsteps import command as footsteps
 from lookstep.bench.perception import command as perception
 from lookstep.errors import UserError
 
@@ -18,7 +19,7 @@ NAME = "bench"
 HELP = "measure one part beside ground truth, baselines and peers"
 EXAMPLE = "lookstep bench perception --quick"
 
-SUBJECTS: tuple[Subject, ...] = (perception,)
+SUBJECTS: tuple[Subject, ...] = (perception, footsteps)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

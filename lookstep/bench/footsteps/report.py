@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -14,6 +13,7 @@ from lookstep.bench.footsteps.map_figures import MapFigures, measure_map
 from lookstep.bench.footsteps.plan_picture import write_plan_picture
 from lookstep.bench.footsteps.three_steps import measure_three_steps
 from lookstep.bench.footsteps.timing import Timing
+from lookstep.bench.subject import Progress
 from lookstep.errors import UserError
 from skills.footsteps import FootstepParameters, TerrainParameters, whole_sole
 from skills.footsteps.region_map import RegionMapError, map_files, read_region_map
@@ -48,7 +48,7 @@ class FootstepReport:
             "three_step_ms": {"median": self.three_steps.median_ms, "p99": self.three_steps.p99_ms},
         }
 
-    def table(self) -> Table:
+    def tables(self) -> tuple[Table]:
         """The figures for people."""
         title = f"{self.solved} of {len(self.maps)} maps solved"
         caption = f"three steps: median {self.three_steps.median_ms:.2f} ms, p99 {self.three_steps.p99_ms:.2f} ms"
@@ -65,17 +65,17 @@ class FootstepReport:
                 figures.region_map.name, plan.outcome.value, *(str(n) for n in numbers), str(plan.expansions),
                 plan.reason,
             )  # fmt: skip
-        return table
+        return (table,)
 
 
 def bench_footsteps(
     data: Path | None,
     parameters: FootstepParameters,
     terrain_parameters: TerrainParameters,
+    progress: Progress,
     *,
     quick: bool = False,
     pictures: Path | None = None,
-    tell: Callable[[str, int, int], None] = lambda name, done, of: None,
 ) -> FootstepReport:
     """Measure the footstep planner.
 
@@ -83,9 +83,9 @@ def bench_footsteps(
         data: folder with planar-region maps; None for the one that LOOKSTEP_DATA names.
         parameters: limits, costs and search settings.
         terrain_parameters: how regions become ground.
+        progress: is told how far it is.
         quick: few repeats.
         pictures: folder for a picture of each plan from above.
-        tell: is called with the name of what is measured next, how many are done, and of how many.
 
     Raises:
         UserError: where there are no maps, or one cannot be read.
@@ -99,13 +99,13 @@ def bench_footsteps(
         pictures.mkdir(parents=True, exist_ok=True)
     measured = []
     for region_map in region_maps:
-        tell(region_map.name, len(measured), len(region_maps) + 1)
+        progress(region_map.name, len(measured), len(region_maps) + 1)
         figures = measure_map(region_map, parameters, terrain_parameters, repeats)
         measured.append(figures)
         if pictures is not None:
             file = pictures / f"{region_map.name}.png"
             write_plan_picture(file, region_map, figures.stance, figures.plan, whole_sole(parameters))
-    tell("three steps", len(measured), len(region_maps) + 1)
+    progress("three steps", len(measured), len(region_maps) + 1)
     return FootstepReport(tuple(measured), measure_three_steps(parameters, terrain_parameters, repeats))
 
 
