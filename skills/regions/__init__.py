@@ -3,6 +3,7 @@
 from skills.regions.debug_image import debug_image, region_colors
 from skills.regions.extraction import RegionExtraction, RejectedRegion, examine_regions, extract_regions
 from skills.regions.memory_parameters import MemoryParameters
+from skills.regions.noise_level import NoiseLevel
 from skills.regions.parameters import RegionParameters
 from skills.regions.pieces import PixelKind, kind_of_pixels, piece_of_pixels
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
@@ -10,6 +11,7 @@ from skills.regions.region_memory import RegionMemory
 
 __all__ = [
     "MemoryParameters",
+    "NoiseLevel",
     "PixelKind",
     "PlanarRegion",
     "PlanarRegions",

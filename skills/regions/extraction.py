@@ -20,6 +20,7 @@ from skills.geometry.polygon import contains_point, signed_area
 from skills.geometry.pose import Array, Pose, readonly
 from skills.geometry.simplification import simplify_rings
 from skills.regions.growing import grow_regions
+from skills.regions.noise_level import NoiseLevel
 from skills.regions.outline import Indices, Outlines, trace_outlines
 from skills.regions.parameters import RegionParameters
 from skills.regions.patches import fit_patches, patch_size
@@ -59,6 +60,7 @@ class RegionExtraction:
         region_labels: the label behind each region.
         rejected: flat pieces that became no region.
         parameters: the tolerances and limits that were used.
+        noise: how noisy the image was found to be.
     """
 
     image: DepthImage
@@ -67,6 +69,7 @@ class RegionExtraction:
     region_labels: tuple[int, ...]
     rejected: tuple[RejectedRegion, ...]
     parameters: RegionParameters
+    noise: NoiseLevel
 
     def __post_init__(self) -> None:
         self.labels.flags.writeable = False
@@ -92,7 +95,7 @@ def examine_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PA
     fine = refine_regions(image, patches, coarse, parameters)
     regions, region_labels, rejected = polygons_of(image, fine.labels, fine.planes, fine.sigma, fine.bend, parameters)
     found = PlanarRegions(regions, image.time, image.frame_id)
-    return RegionExtraction(image, found, fine.labels, region_labels, rejected, parameters)
+    return RegionExtraction(image, found, fine.labels, region_labels, rejected, parameters, fine.noise)
 
 
 def polygons_of(

@@ -42,7 +42,8 @@ def piece_of_pixels(extraction: RegionExtraction, stride: int = 1) -> NDArray[np
     pieces = [(label, k) for k, label in enumerate(extraction.region_labels)]
     pieces += [(piece.label, -2 - k) for k, piece in enumerate(extraction.rejected)]
     counts = Counter(label for label, _ in pieces)
-    alone = np.full(max(counts, default=-1) + 2, -1, dtype=np.int16)  # the last entry is that of label -1
+    # The last entry is that of label -1; specks have a label and are no piece.
+    alone = np.full(max([int(labels.max(initial=-1)), *counts]) + 2, -1, dtype=np.int16)
     shared = []
     for label, piece in pieces:
         alone[label] = piece

@@ -11,7 +11,7 @@ from scripted_walk import PARAMETERS, WalkingRobot, goal, ground, plan, step, ti
 from behaviors import JobOutcome, Outcome, Status, Tree, load_tree
 from behaviors.leaves import look, plan_steps
 from behaviors.leaves.plan_steps import PlanRequest
-from skills.regions import RegionExtraction
+from skills.regions import NoiseLevel, RegionExtraction
 
 SPEC = load_tree(Path(__file__).parents[3] / "trees" / "look_and_step.yaml")
 WALK = "/look_and_step/walk/sequence"
@@ -29,7 +29,9 @@ def requests(monkeypatch: pytest.MonkeyPatch) -> list[PlanRequest]:
         return plan(request.first_sequence_id, plan_id=request.plan_id)
 
     def examine(image, parameters):
-        return RegionExtraction(image, ground(image.time), np.zeros((1, 1), dtype=np.int16), (0,), (), parameters)
+        return RegionExtraction(
+            image, ground(image.time), np.zeros((1, 1), dtype=np.int16), (0,), (), parameters, NoiseLevel()
+        )
 
     monkeypatch.setattr(plan_steps, "plan_on_request", answer)
     monkeypatch.setattr(look, "examine_regions", examine)

@@ -9,7 +9,7 @@ from scripted_walk import PARAMETERS, WalkingRobot, feet_at, ground, status_and_
 from behaviors import Status, Tree, parse_tree
 from behaviors.leaves import look
 from skills.geometry import DepthImage
-from skills.regions import PlanarRegions, RegionExtraction, RegionParameters
+from skills.regions import NoiseLevel, PlanarRegions, RegionExtraction, RegionParameters
 
 LOOK = """
 tree: look
@@ -30,7 +30,7 @@ def looked_at(monkeypatch: pytest.MonkeyPatch) -> list[DepthImage]:
         assert parameters is PARAMETERS["regions"]
         images.append(image)
         seen = PlanarRegions(ground(image.time).regions, image.time, image.frame_id)
-        return RegionExtraction(image, seen, np.zeros((1, 1), dtype=np.int16), (0,), (), parameters)
+        return RegionExtraction(image, seen, np.zeros((1, 1), dtype=np.int16), (0,), (), parameters, NoiseLevel())
 
     monkeypatch.setattr(look, "examine_regions", examine)
     return images
