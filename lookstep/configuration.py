@@ -18,6 +18,7 @@ from sim_envs.sensors import DepthCameraParameters, DepthNoise, LidarNoise, Lida
 from sim_envs.worlds import FallParameters, KinematicWorldParameters
 from skills.body_path import SubGoalParameters
 from skills.footsteps import FootstepParameters, TerrainParameters
+from skills.height_map import HeightMapParameters
 from skills.regions import MemoryParameters, RegionParameters
 from skills.walking import WalkingParameters
 from strict_yaml import (
@@ -56,6 +57,7 @@ class Configuration:
     walking: WalkingParameters
     regions: RegionParameters
     region_memory: MemoryParameters
+    height_map: HeightMapParameters
     sub_goal: SubGoalParameters
     footsteps: FootstepParameters
     terrain: TerrainParameters

@@ -1,7 +1,7 @@
 """Load every compiled kernel before the clock starts, so that no walk pays for compiling.
 
-The whole chain runs once on a small flat course: one image, its regions, one plan, one control step. The first time on
-a machine this compiles, later it loads from the disk cache.
+The whole chain runs once on a small flat course: one image, its regions, one scan, its heights, one plan, one control
+step. The first time on a machine this compiles, later it loads from the disk cache.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from lookstep.world import build_world
 from sim_envs.courses import load_course
 from skills.body_path import straight_path, sub_goal
 from skills.footsteps import plan_from_stance, terrain_ahead
+from skills.height_map import HeightMapper
 from skills.regions import RegionMemory, examine_regions
 
 
@@ -20,11 +21,12 @@ def warm_up(configuration: Configuration) -> None:
     """Run each kernel once with the types that a walk uses."""
     course = load_course("flat")
     world = build_world(course, configuration)
-    image = world.depth_image()
-    assert image is not None, "the world takes its first frame when it is made"
+    image, scan = world.depth_image(), world.lidar_scan()
+    assert image is not None and scan is not None, "the world takes its first frames when it is made"
     stance = world.status().imminent_stance
     extraction = examine_regions(image, configuration.regions)
     ground = RegionMemory(configuration.region_memory).update(extraction.regions, stance, image)
+    HeightMapper(configuration.height_map).update(scan, stance.mid_feet)
     path = straight_path(np.array(course.start), np.array(course.goal))
     goal = sub_goal(path, stance, configuration.sub_goal)
     terrain = terrain_ahead(ground, stance, goal, configuration.footsteps, configuration.terrain)

@@ -2,6 +2,7 @@
 
 from behaviors.leaves.follow_path import FindSubGoal, GoalReached, PlanBodyPath, WaitForGoal
 from behaviors.leaves.guards import GroundFresh, RobotFallen
+from behaviors.leaves.height_map import UpdateHeightMap
 from behaviors.leaves.look import ExtractRegions, RememberGround
 from behaviors.leaves.plan_steps import PlanFootsteps
 from behaviors.leaves.walk import PauseWalking, SendFootsteps, WaitForSwing, WaitUntilStanding
@@ -17,6 +18,7 @@ __all__ = [
     "RememberGround",
     "RobotFallen",
     "SendFootsteps",
+    "UpdateHeightMap",
     "WaitForGoal",
     "WaitForSwing",
     "WaitUntilStanding",

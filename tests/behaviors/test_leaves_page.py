@@ -17,6 +17,7 @@ from behaviors import Outcome, Registry, Tree, draw, load_tree
 from behaviors.blackboard import type_name
 from behaviors.leaf import declared_inputs, declared_outputs
 from skills.geometry.pose import Pose
+from skills.height_map import HeightMapParameters
 from skills.regions import MemoryParameters
 from skills.walking import StepEvent, StepEventKind
 from strict_yaml import YamlError, parse_document
@@ -61,7 +62,7 @@ def folder(tmp_path: Path) -> Path:
 
 def test_the_tree_with_the_new_leaf_ends_after_so_many_steps(registry, folder):
     robot = ScriptedRobot()
-    parameters = {"region_memory": MemoryParameters()}
+    parameters = {"region_memory": MemoryParameters(), "height_map": HeightMapParameters()}
     tree = Tree(load_tree(folder / "a_few_steps.yaml", registry), robot, parameters=parameters)
     for made in range(6):
         assert tree.outcome is Outcome.RUNNING

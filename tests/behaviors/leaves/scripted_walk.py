@@ -19,7 +19,8 @@ from skills.footsteps import (
     Stance,
     TerrainParameters,
 )
-from skills.geometry import DepthImage, PinholeCamera, Pose
+from skills.geometry import DepthImage, LidarScan, PinholeCamera, Pose, SpinningLidar
+from skills.height_map import HeightMapParameters
 from skills.regions import MemoryParameters, PlanarRegion, PlanarRegions, RegionParameters
 from skills.walking import RobotState, StepEvent, WalkingPhase, WalkingStatus
 
@@ -28,10 +29,12 @@ SWING, TRANSFER = 1.2, 0.8
 PARAMETERS: Mapping[str, Any] = {
     "regions": RegionParameters(),
     "region_memory": MemoryParameters(),
+    "height_map": HeightMapParameters(),
     "sub_goal": SubGoalParameters(),
     "footsteps": FootstepParameters(),
     "terrain": TerrainParameters(),
 }
+_LIDAR = SpinningLidar(3, 4, 0.5, -0.5)
 _CAMERA = PinholeCamera(4, 3, 2.0, 2.0, 1.5, 1.0)
 _SOLE = np.array([[0.13, 0.069], [-0.13, 0.069], [-0.13, -0.069], [0.13, -0.069]])
 
@@ -42,6 +45,7 @@ class WalkingRobot:
     Attributes:
         time: robot time, moved by hand [s].
         frame_id: of the newest depth image; None before the first.
+        scan_id: of the newest lidar scan; None before the first.
         queue: what it was sent and has not dropped.
         commands: names of the commands so far.
     """
@@ -49,6 +53,7 @@ class WalkingRobot:
     def __init__(self) -> None:
         self.time = 0.0
         self.frame_id: int | None = None
+        self.scan_id: int | None = None
         self.queue: tuple[Footstep, ...] = ()
         self.commands: list[str] = []
         self._feet = feet_at(0.0)
@@ -89,8 +94,11 @@ class WalkingRobot:
         T_world_camera = Pose.from_xyz_rpy((0.0, 0.0, 1.0))
         return DepthImage(np.zeros((3, 4), dtype=np.float32), _CAMERA, T_world_camera, self.time, self.frame_id)
 
-    def lidar_scan(self) -> None:
-        return None
+    def lidar_scan(self) -> LidarScan | None:
+        if self.scan_id is None:
+            return None
+        T_world_lidar = Pose.from_xyz_rpy((0.0, 0.0, 1.7))
+        return LidarScan(np.zeros((3, 4), dtype=np.float32), _LIDAR, T_world_lidar, self.time, self.scan_id)
 
     def send_footsteps(self, steps: tuple[Footstep, ...]) -> None:
         self.queue = steps
