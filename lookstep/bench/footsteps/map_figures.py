@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from lookstep.bench.footsteps.timing import Timing, timed
+from lookstep.bench.timing import Timing, timed
 from skills.footsteps import (
     FootstepParameters,
     FootstepPlan,

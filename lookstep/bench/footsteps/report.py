@@ -12,8 +12,8 @@ from rich.table import Table
 from lookstep.bench.footsteps.map_figures import MapFigures, measure_map
 from lookstep.bench.footsteps.plan_picture import write_plan_picture
 from lookstep.bench.footsteps.three_steps import measure_three_steps
-from lookstep.bench.footsteps.timing import Timing
 from lookstep.bench.subject import Progress
+from lookstep.bench.timing import Timing
 from lookstep.errors import UserError
 from skills.footsteps import FootstepParameters, TerrainParameters, whole_sole
 from skills.footsteps.region_map import RegionMapError, map_files, read_region_map

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from lookstep.bench.footsteps.timing import Timing, timed
+from lookstep.bench.timing import Timing, timed
 from sim_envs.courses import Box, Course, load_course
 from skills.body_path import SubGoalParameters, goal_reached, straight_path, sub_goal
 from skills.footsteps import (

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import dataclasses
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -12,8 +13,6 @@ NAME = "perception"
 HELP = "quality of regions against ground truth, and the time of every stage of perception"
 EXAMPLE = "lookstep bench perception --quick --json perception.json"
 
-_FRAMES, _QUICK_FRAMES = 50, 4
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the number of frames."""
@@ -21,16 +20,19 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--frames",
         type=_positive,
         metavar="N",
-        help=f"scenes of each kind that are judged with each noise ({_FRAMES}; --quick: {_QUICK_FRAMES})",
+        help="scenes of each kind that are judged with each noise (50; --quick: 3)",
     )
 
 
 def measure(options: argparse.Namespace, progress: Progress) -> Report:
     """Judge and time."""
     # Loading the simulation takes seconds; whoever asks for help need not wait for it.
-    from lookstep.bench.perception.report import bench_perception
+    from lookstep.bench.perception.report import FULL, QUICK, bench_perception
 
-    return bench_perception(options.frames or (_QUICK_FRAMES if options.quick else _FRAMES), progress)
+    extent = QUICK if options.quick else FULL
+    if options.frames is not None:
+        extent = dataclasses.replace(extent, scenes=options.frames)
+    return bench_perception(extent, progress)
 
 
 def _positive(text: str) -> int:

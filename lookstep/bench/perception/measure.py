@@ -8,7 +8,7 @@ From Python, on scenes that may be used for tuning:
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 
 from lookstep.bench.perception.ground_cells import GroundCells, ground_figures, judge_ground
 from lookstep.bench.perception.quality import Quality, figures, judge, pool
-from lookstep.bench.perception.scenes import CAMERA, NOISES, Scene, scene
+from lookstep.bench.perception.rapid_regions_baseline import find_regions
+from lookstep.bench.perception.scenes import CAMERA, NOISES, SCENES, Scene, scene
 from lookstep.bench.perception.truth import Truth, true_view
+from lookstep.bench.subject import Progress
 from sim_envs.courses import Ground
 from sim_envs.sensors.depth_noise import DepthNoiseModel
 from skills.geometry.camera import DepthImage
@@ -43,6 +45,12 @@ def extractor(parameters: RegionParameters | None = None) -> Extractor:
     return extract
 
 
+def baseline_extractor(parameters: RegionParameters | None = None) -> Extractor:
+    """The paper's own method, with the same limits lifted."""
+    chosen = every_plane(parameters or RegionParameters())
+    return lambda image: find_regions(image, chosen)
+
+
 def measure_quality(
     extract: Extractor,
     scene_name: str,
@@ -61,6 +69,21 @@ def measure_quality(
     """
     frames = [judge_frame(extract, true_frame(scene_name, seed, depth_max), noise) for seed in seeds]
     return frame_figures(frames)
+
+
+def compare_methods(
+    methods: Mapping[str, Extractor], seeds: Sequence[int], depth_max: float, progress: Progress
+) -> dict[tuple[str, str, str], dict[str, float]]:
+    """Figures by method, scene and noise, on these seeds of every scene; every method sees the same images."""
+    judged: dict[tuple[str, str, str], list[tuple[Quality, GroundCells | None]]] = {}
+    for scene_name in SCENES:
+        for index, seed in enumerate(seeds):
+            progress(f"judging regions of {scene_name} scenes", index, len(seeds))
+            frame = true_frame(scene_name, seed, depth_max)
+            for noise in NOISES:
+                for method, extract in methods.items():
+                    judged.setdefault((method, scene_name, noise), []).append(judge_frame(extract, frame, noise))
+    return {key: frame_figures(frames) for key, frames in judged.items()}
 
 
 def frame_figures(frames: Sequence[tuple[Quality, GroundCells | None]]) -> dict[str, float]:

@@ -7,30 +7,42 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from rich import box
 from rich.table import Table
 
-from lookstep.bench.perception.measure import Extractor, extractor, frame_figures, judge_frame, true_frame
+from lookstep.bench.machine import machine
+from lookstep.bench.perception.measure import Extractor, baseline_extractor, compare_methods, extractor
 from lookstep.bench.perception.scenes import HELD_OUT_SEEDS, NOISES, SCENES
+from lookstep.bench.perception.stage_times import STAGES, StageTimes, baseline_ratio, time_stages
+from lookstep.bench.perception.walk_frames import walk_frames
 from lookstep.bench.subject import Progress
+from lookstep.bench.timing import Timing
+from lookstep.configuration import load_configuration
 from lookstep.summary import installed_versions
-from skills.regions import RegionParameters
 
 Figures = Mapping[str, float]
 
-_QUALITY_COLUMNS = {
-    "recall": ("recall", ".3f"),
-    "iou": ("IoU", ".3f"),
-    "normal_deg_median": ("normal [deg]", ".2f"),
-    "normal_deg_p90": ("90 %", ".2f"),
-    "offset_mm_median": ("offset [mm]", ".2f"),
-    "offset_mm_p90": ("90 %", ".2f"),
-    "false_area": ("false area", ".1%"),
-}
-_GROUND_COLUMNS = {
-    "coverage": ("covered", ".1%"),
-    "wrong_height": ("> 15 mm off", ".2%"),
-    "wrong_slope": ("> 5 deg off", ".2%"),
-}
+OURS, BASELINE = "lookstep", "paper"
+_JSON_STAGES = ("depth", "depth_noise", "extract", "memory", "lidar")
+_PARTS = ("patches", "growing", "refinement", "polygons")
+
+
+@dataclass(frozen=True, slots=True)
+class Extent:
+    """How much is measured.
+
+    Attributes:
+        scenes: of each kind, judged with each noise.
+        frames: of the walk.
+        duration: of the walk, at most [s].
+    """
+
+    scenes: int
+    frames: int
+    duration: float
+
+
+FULL, QUICK = Extent(50, 200, 60.0), Extent(3, 30, 6.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,60 +52,116 @@ class PerceptionReport:
     Attributes:
         quality: by method, scene and noise.
         seeds: of the scenes.
+        times: of every stage.
+        frames: on which those were taken.
+        walk_seed: of the walk that they come from.
     """
 
     quality: Mapping[tuple[str, str, str], Figures]
     seeds: range
+    times: StageTimes
+    frames: int
+    walk_seed: int
 
     def as_json(self) -> dict[str, Any]:
         """The figures under the names that programs read."""
-        ours = {(scene, noise): _plain(self.quality["lookstep", scene, noise]) for scene in SCENES for noise in NOISES}
+        times, wall = self.times.by_stage(), self.times.by_stage(wall=True)
         return {
-            "quality": {noise: ours["scattered", noise] for noise in NOISES},
-            "contiguous": {noise: ours["contiguous", noise] for noise in NOISES},
-            "seeds": [self.seeds.start, self.seeds.stop - 1],
+            **{f"{stage}_ms": _json_timing(times[stage]) for stage in _JSON_STAGES},
+            "extract_parts_ms": {part: _json_timing(times[part]) for part in _PARTS},
+            "baseline_ms": _json_timing(times["baseline"]),
+            "baseline_ratio": round(baseline_ratio(times), 3),
+            "wall_ms": {stage: _json_timing(timing) for stage, timing in wall.items()},
+            "quality": self._json_quality(OURS, "scattered"),
+            "contiguous": self._json_quality(OURS, "contiguous"),
+            "baseline_quality": self._json_quality(BASELINE, "scattered"),
+            "baseline_contiguous": self._json_quality(BASELINE, "contiguous"),
+            "seeds": {"scenes": [self.seeds.start, self.seeds.stop - 1], "walk": self.walk_seed},
+            "scenes": len(self.seeds),
+            "frames": self.frames,
+            "machine": machine(),
             "versions": installed_versions(),
         }
 
     def tables(self) -> Sequence[Table]:
-        """One table of quality a scene."""
-        return [self._quality_table(scene) for scene in SCENES]
+        """Times, quality on both kinds of scenes, and the ground of the contiguous one."""
+        return [
+            self._time_table(),
+            *(self._quality_table(scene) for scene in SCENES),
+            self._ground_table(),
+        ]
 
-    def _quality_table(self, scene: str) -> Table:
-        columns = _QUALITY_COLUMNS | (_GROUND_COLUMNS if scene == "contiguous" else {})
-        some = next(figures for (_, name, _), figures in self.quality.items() if name == scene)
-        table = Table(title=f"{scene}: {some['faces']:.0f} faces in {len(self.seeds)} scenes", title_justify="left")
-        table.add_column("noise")
-        table.add_column("method")
-        for header, _ in columns.values():
-            table.add_column(header, justify="right")
-        for (method, name, noise), figures in self.quality.items():
-            if name == scene:
-                cells = (format(figures[column], form) for column, (_, form) in columns.items())
-                table.add_row(noise, method, *cells)
+    def _json_quality(self, method: str, scene: str) -> dict[str, dict[str, float | None]]:
+        return {noise: _plain(self.quality[method, scene, noise]) for noise in NOISES}
+
+    def _time_table(self) -> Table:
+        times, wall = self.times.by_stage(), self.times.by_stage(wall=True)
+        title = f"time on one core [ms], {self.frames} frames of a walk over the rough course"
+        about = machine()
+        caption = (
+            f"the paper's method takes {baseline_ratio(times):.2f} x as long; "
+            f"{about['processor']}, {about['cores']} cores"
+        )
+        table = _table(title, ("stage",), ("median", "p99", "wall median", "wall p99"), caption)
+        for stage, name in STAGES.items():
+            both = (times[stage], wall[stage])
+            table.add_row(name, *(f"{value:.2f}" for timing in both for value in (timing.median_ms, timing.p99_ms)))
         return table
 
+    def _quality_table(self, scene: str) -> Table:
+        faces = next(figures["faces"] for (_, name, _), figures in self.quality.items() if name == scene)
+        title = f"{scene}: {faces:.0f} planar faces in {len(self.seeds)} scenes not used for tuning"
+        columns = ("recall", "IoU", "normal [deg]", "offset [mm]", "false")
+        table = _table(title, ("noise", "method"), columns, "normal and offset: median / 90 %; false: share of area")
+        for noise, method, figures in self._rows(scene):
+            table.add_row(
+                noise,
+                method,
+                f"{figures['recall']:.3f}",
+                f"{figures['iou']:.3f}",
+                f"{figures['normal_deg_median']:.2f} / {figures['normal_deg_p90']:.2f}",
+                f"{figures['offset_mm_median']:.2f} / {figures['offset_mm_p90']:.2f}",
+                f"{figures['false_area']:.1%}",
+            )
+        return table
 
-def bench_perception(frames: int, progress: Progress) -> PerceptionReport:
-    """Judge regions on this many scenes of each kind."""
-    seeds = HELD_OUT_SEEDS[:frames]
-    return PerceptionReport(_quality({"lookstep": extractor()}, seeds, progress), seeds)
+    def _ground_table(self) -> Table:
+        title = "contiguous: cells of ground within 2 m"
+        table = _table(title, ("noise", "method"), ("covered", "> 15 mm off", "> 5 deg off"), None)
+        for noise, method, figures in self._rows("contiguous"):
+            shares = (figures["coverage"], figures["wrong_height"], figures["wrong_slope"])
+            table.add_row(noise, method, *(f"{share:.2%}" for share in shares))
+        return table
+
+    def _rows(self, scene: str) -> list[tuple[str, str, Figures]]:
+        return [(noise, method, self.quality[method, scene, noise]) for noise in NOISES for method in (OURS, BASELINE)]
 
 
-def _quality(
-    extractors: Mapping[str, Extractor], seeds: range, progress: Progress
-) -> dict[tuple[str, str, str], Figures]:
-    """Figures by method, scene and noise; every method sees the same images."""
-    depth_max = RegionParameters().depth_max
-    judged: dict[tuple[str, str, str], Any] = {}
-    for scene in SCENES:
-        for index, seed in enumerate(seeds):
-            progress(f"judging regions of {scene} scenes", index, len(seeds))
-            frame = true_frame(scene, seed, depth_max)
-            for noise in NOISES:
-                for method, extract in extractors.items():
-                    judged.setdefault((method, scene, noise), []).append(judge_frame(extract, frame, noise))
-    return {key: frame_figures(frames) for key, frames in judged.items()}
+def bench_perception(extent: Extent, progress: Progress) -> PerceptionReport:
+    """Judge regions on scenes that were not used for tuning, and time every stage on the frames of a walk."""
+    configuration = load_configuration()
+    seeds = HELD_OUT_SEEDS[: extent.scenes]
+    methods: dict[str, Extractor] = {
+        OURS: extractor(configuration.regions),
+        BASELINE: baseline_extractor(configuration.regions),
+    }
+    walked = walk_frames(extent.frames, extent.duration, seeds[0], progress)
+    times = time_stages(walked, configuration, progress)
+    quality = compare_methods(methods, seeds, configuration.regions.depth_max, progress)
+    return PerceptionReport(quality, seeds, times, len(walked.frames), walked.seed)
+
+
+def _table(title: str, names: Sequence[str], columns: Sequence[str], caption: str | None) -> Table:
+    table = Table(title=title, title_justify="left", caption=caption, caption_justify="left", box=box.SIMPLE)
+    for name in names:
+        table.add_column(name)
+    for name in columns:
+        table.add_column(name, justify="right")
+    return table
+
+
+def _json_timing(timing: Timing) -> dict[str, float]:
+    return {"median": timing.median_ms, "p99": timing.p99_ms}
 
 
 def _plain(figures: Figures) -> dict[str, float | None]:
