@@ -46,21 +46,42 @@ class GroundCells:
     wrong_slope: int
 
 
-def judge_ground(truth: Truth, ground: Ground, regions: PlanarRegions) -> GroundCells:
-    """Compare the ground regions of one frame with the true ground around the camera."""
+@dataclass(frozen=True, slots=True, eq=False)
+class TrueGround:
+    """The ground around a camera.
+
+    Attributes:
+        ground: the true ground.
+        corner: where the grid begins, (2,) [m].
+        near: cells that are judged, (size, size) bool, rows along y.
+        seen: those in which some pixel sees ground.
+    """
+
+    ground: Ground
+    corner: Array
+    near: NDArray[np.bool_]
+    seen: NDArray[np.bool_]
+
+
+def true_ground(truth: Truth, ground: Ground) -> TrueGround:
+    """The grid of cells around the camera of a true view."""
     corner = truth.image.T_world_camera.p[:2] - RANGE
     size = round(2.0 * RANGE / CELL)
     center = (np.arange(size) + 0.5) * CELL - RANGE
     near = center[:, None] ** 2 + center**2 <= RANGE**2
-    seen = _seen_cells(truth, corner, size) & near
-    height, normal = _cells_of(regions, corner, size)
-    covered = np.isfinite(height) & near
+    return TrueGround(ground, corner, near, near & _seen_cells(truth, corner, size))
+
+
+def judge_ground(around: TrueGround, regions: PlanarRegions) -> GroundCells:
+    """Compare the ground regions of one frame with the true ground around the camera."""
+    height, normal = _cells_of(regions, around.corner, len(around.near))
+    covered = np.isfinite(height) & around.near
     rows, columns = np.nonzero(covered)
-    surface, true_normal, _ = ground.surface(corner + (np.column_stack((columns, rows)) + 0.5) * CELL)
+    surface, true_normal, _ = around.ground.surface(around.corner + (np.column_stack((columns, rows)) + 0.5) * CELL)
     cosine = np.einsum("ni,ni->n", true_normal, normal[rows, columns])
     return GroundCells(
-        seen=int(seen.sum()),
-        seen_covered=int((seen & covered).sum()),
+        seen=int(around.seen.sum()),
+        seen_covered=int((around.seen & covered).sum()),
         covered=len(rows),
         wrong_height=int((np.abs(surface - height[rows, columns]) > WRONG_HEIGHT).sum()),
         wrong_slope=int((cosine < np.cos(WRONG_SLOPE)).sum()),

@@ -9,15 +9,16 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lookstep.bench.perception.ground_cells import GroundCells, ground_figures, judge_ground
+from lookstep.bench.perception.ground_cells import GroundCells, TrueGround, ground_figures, judge_ground, true_ground
 from lookstep.bench.perception.quality import Quality, figures, judge, pool
 from lookstep.bench.perception.rapid_regions_baseline import find_regions
-from lookstep.bench.perception.scenes import CAMERA, NOISES, SCENES, Scene, scene
+from lookstep.bench.perception.scenes import CAMERA, NOISES, SCENES, scene
 from lookstep.bench.perception.truth import Truth, true_view
 from lookstep.bench.subject import Progress
 from sim_envs.courses import Ground
@@ -27,6 +28,14 @@ from skills.regions import PlanarRegions, RegionParameters, examine_regions
 
 Extractor = Callable[[DepthImage], tuple[PlanarRegions, NDArray[np.integer]]]
 """Finds regions in an image, and says which label each pixel has, (height, width), negative for none."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrueFrame:
+    """What a camera truly sees, and the ground around it on the contiguous course."""
+
+    truth: Truth
+    ground: TrueGround | None
 
 
 def every_plane(parameters: RegionParameters) -> RegionParameters:
@@ -92,18 +101,18 @@ def frame_figures(frames: Sequence[tuple[Quality, GroundCells | None]]) -> dict[
     return figures(pool([quality for quality, _ in frames])) | (ground_figures(grounds) if grounds else {})
 
 
-def true_frame(scene_name: str, seed: int, depth_max: float) -> tuple[Scene, Truth]:
-    """A scene and what its camera truly sees."""
+def true_frame(scene_name: str, seed: int, depth_max: float) -> TrueFrame:
+    """A scene and what its camera truly sees, down to a depth [m]."""
     looked_at = scene(scene_name, seed)
-    return looked_at, true_view(looked_at, depth_max)
+    truth = true_view(looked_at, depth_max)
+    return TrueFrame(truth, true_ground(truth, Ground(looked_at.boxes)) if scene_name == "contiguous" else None)
 
 
-def judge_frame(extract: Extractor, frame: tuple[Scene, Truth], noise: str) -> tuple[Quality, GroundCells | None]:
+def judge_frame(extract: Extractor, frame: TrueFrame, noise: str) -> tuple[Quality, GroundCells | None]:
     """What an extractor makes of one frame; cells of ground on the contiguous course only."""
-    looked_at, truth = frame
-    regions, labels = extract(noisy(truth.image, noise))
-    cells = judge_ground(truth, Ground(looked_at.boxes), regions) if looked_at.name == "contiguous" else None
-    return judge(truth, regions, labels), cells
+    regions, labels = extract(noisy(frame.truth.image, noise))
+    cells = None if frame.ground is None else judge_ground(frame.ground, regions)
+    return judge(frame.truth, regions, labels), cells
 
 
 def noisy(image: DepthImage, noise: str) -> DepthImage:

@@ -39,14 +39,14 @@ class BaselineParameters:
         patches_min: smaller regions are dropped.
     """
 
-    patch: int = 6
+    patch: int = 4
     span: int = 6
     blur: float = 1.5
-    link_angle: float = np.deg2rad(12.0)
-    link_offset: float = 0.008
-    link_distance: float = 6.0
-    links_min: int = 5
-    patches_min: int = 12
+    link_angle: float = np.deg2rad(14.0)
+    link_offset: float = 0.003
+    link_distance: float = 10.0
+    links_min: int = 3
+    patches_min: int = 48
 
 
 def find_regions(
@@ -98,13 +98,12 @@ def search_regions(
 
 def region_planes(centroids: Array, labels: Labels, count: int) -> tuple[Array, Array]:
     """Least-squares plane of each region's centroids, as (a, b, c) with 1/z = a x + b y + c, and its spread [m]."""
-    inside = labels >= 0
-    points, owner = centroids[inside], labels[inside]
-    pixels = np.maximum(np.bincount(owner, minlength=count), 1)
-    mean = np.column_stack([np.bincount(owner, points[:, k], count) for k in range(3)]) / pixels[:, None]
-    off = points - mean[owner]
-    moments = [np.bincount(owner, off[:, i] * off[:, j], count) for i in range(3) for j in range(3)]
-    variances, axes = np.linalg.eigh(np.array(moments).T.reshape(count, 3, 3) / pixels[:, None, None])
+    sums = np.zeros((count, 10))
+    _sum_moments(centroids, labels, sums)
+    n = np.maximum(sums[:, 0], 1.0)
+    mean = sums[:, 1:4] / n[:, None]
+    moments = sums[:, [4, 5, 6, 5, 7, 8, 6, 8, 9]].reshape(count, 3, 3) / n[:, None, None]
+    variances, axes = np.linalg.eigh(moments - mean[:, :, None] * mean[:, None, :])
     normals = axes[:, :, 0]
     return normals / np.einsum("ri,ri->r", normals, mean)[:, None], np.sqrt(np.maximum(variances[:, 0], 0.0))
 
@@ -118,16 +117,16 @@ def _spread(patch_labels: Labels, patch: int, shape: tuple[int, ...]) -> Labels:
 
 @kernel
 def _fill_dead_pixels(depth: NDArray[np.float32], filled: NDArray[np.float32]) -> None:
-    """Give each pixel without depth the first depth found around it."""
+    """Give each pixel without depth the deepest around it; the outermost columns stay, so that the loop vectorises."""
     height, width = depth.shape
     for v in range(height):
-        for u in range(width):
-            if depth[v, u] > 0.0:
-                continue
-            for i in range(max(v - 1, 0), min(v + 2, height)):
-                for j in range(max(u - 1, 0), min(u + 2, width)):
-                    if depth[i, j] > 0.0:
-                        filled[v, u] = depth[i, j]
+        above, here, below = depth[max(v - 1, 0)], depth[v], depth[min(v + 1, height - 1)]
+        out = filled[v]
+        for u in range(1, width - 1):
+            upper = max(above[u - 1], above[u], above[u + 1])
+            lower = max(below[u - 1], below[u], below[u + 1])
+            around = max(upper, lower, here[u - 1], here[u + 1])
+            out[u] = here[u] if here[u] > np.float32(0.0) else around
 
 
 @kernel
@@ -263,6 +262,27 @@ def _search(links: NDArray[np.uint8], links_min: int, patches_min: int, labels: 
         for column in range(columns):
             labels[row, column] = max(labels[row, column], -1)
     return region
+
+
+@kernel
+def _sum_moments(centroids: Array, labels: Labels, sums: Array) -> None:
+    """Sums of 1, x, y, z, xx, xy, xz, yy, yz and zz over the centroids of each region."""
+    for row in range(labels.shape[0]):
+        for column in range(labels.shape[1]):
+            if labels[row, column] < 0:
+                continue
+            s, p = sums[labels[row, column]], centroids[row, column]
+            x, y, z = p[0], p[1], p[2]
+            s[0] += 1.0
+            s[1] += x
+            s[2] += y
+            s[3] += z
+            s[4] += x * x
+            s[5] += x * y
+            s[6] += x * z
+            s[7] += y * y
+            s[8] += y * z
+            s[9] += z * z
 
 
 @kernel

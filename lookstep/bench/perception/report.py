@@ -7,8 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rich import box
+from rich.box import SIMPLE
 from rich.table import Table
+from rich.text import Text
 
 from lookstep.bench.machine import machine
 from lookstep.bench.perception.measure import Extractor, baseline_extractor, compare_methods, extractor
@@ -127,7 +128,7 @@ class PerceptionReport:
 
     def _ground_table(self) -> Table:
         title = "contiguous: cells of ground within 2 m"
-        table = _table(title, ("noise", "method"), ("covered", "> 15 mm off", "> 5 deg off"), None)
+        table = _table(title, ("noise", "method"), ("covered", "> 15 mm off", "> 5 deg off"))
         for noise, method, figures in self._rows("contiguous"):
             shares = (figures["coverage"], figures["wrong_height"], figures["wrong_slope"])
             table.add_row(noise, method, *(f"{share:.2%}" for share in shares))
@@ -151,12 +152,13 @@ def bench_perception(extent: Extent, progress: Progress) -> PerceptionReport:
     return PerceptionReport(quality, seeds, times, len(walked.frames), walked.seed)
 
 
-def _table(title: str, names: Sequence[str], columns: Sequence[str], caption: str | None) -> Table:
-    table = Table(title=title, title_justify="left", caption=caption, caption_justify="left", box=box.SIMPLE)
+def _table(title: str, names: Sequence[str], columns: Sequence[str], caption: str = "") -> Table:
+    # As Text, because a unit in brackets would be taken for markup.
+    table = Table(title=Text(title), caption=Text(caption), title_justify="left", caption_justify="left", box=SIMPLE)
     for name in names:
-        table.add_column(name)
+        table.add_column(Text(name), no_wrap=True)
     for name in columns:
-        table.add_column(name, justify="right")
+        table.add_column(Text(name), justify="right", no_wrap=True)
     return table
 
 

@@ -115,7 +115,7 @@ def _visible_pieces(surface: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDAr
     face = np.where(surface < 0, surface, VOID).astype(np.int32)
     surfaces: list[int] = []
     for index in np.flatnonzero(np.bincount(surface.ravel() + 2)[2:]):
-        mask = (surface == index).astype(np.uint8)
+        mask = (surface == index).view(np.uint8)
         x, y, width, height = cv2.boundingRect(mask)
         window = np.s_[y : y + height, x : x + width]
         count, pieces = cv2.connectedComponents(mask[window], connectivity=4)

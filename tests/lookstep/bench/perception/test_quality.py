@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lookstep.bench.perception.fill import fill
-from lookstep.bench.perception.ground_cells import CELL, ground_figures, judge_ground
+from lookstep.bench.perception.ground_cells import CELL, TrueGround, ground_figures, judge_ground, true_ground
 from lookstep.bench.perception.measure import extractor, measure_quality, noisy
 from lookstep.bench.perception.quality import figures, judge
 from lookstep.bench.perception.scenes import HELD_OUT_SEEDS, NOISES, SCENES, TUNING_SEEDS, Scene, camera_pose, scene
@@ -35,6 +35,10 @@ def seen(*boxes: Box) -> tuple[Truth, Scene]:
     """The boxes from straight above, so that no side is in view."""
     looked_at = Scene("test", 0, boxes, CAMERA, camera_pose((0.0, 0.0, 1.2), pitch=0.5 * np.pi))
     return true_view(looked_at), looked_at
+
+
+def ground_of(*boxes: Box) -> TrueGround:
+    return true_ground(seen(*boxes)[0], Ground(boxes))
 
 
 def regions(*found: PlanarRegion) -> PlanarRegions:
@@ -148,30 +152,30 @@ def test_a_face_in_two_pieces_counts_twice():
 
 
 def test_perfect_ground_is_right_everywhere():
-    truth, looked_at = seen(*TWO)
-    found = ground_figures([judge_ground(truth, Ground(looked_at.boxes), regions(*map(top, TWO)))])
+    ground = ground_of(*TWO)
+    found = ground_figures([judge_ground(ground, regions(*map(top, TWO)))])
     assert found["coverage"] == pytest.approx(1.0, abs=0.02)
     assert found["wrong_height"] == found["wrong_slope"] == 0.0
 
 
 def test_ground_that_reaches_past_its_block_is_wrong():
-    truth, looked_at = seen(TWO[0])
-    cells = judge_ground(truth, Ground(looked_at.boxes), regions(top(TWO[0], grow=2 * CELL)))
+    ground = ground_of(TWO[0])
+    cells = judge_ground(ground, regions(top(TWO[0], grow=2 * CELL)))
     assert cells.covered == pytest.approx(54**2, rel=0.01)
     assert cells.wrong_height == pytest.approx(54**2 - 50**2, rel=0.05)
 
 
 def test_tilted_and_lifted_ground_is_counted():
-    truth, looked_at = seen(TWO[0])
+    ground = ground_of(TWO[0])
     turned, lifted = top(TWO[0], pitch=np.deg2rad(6.0)), top(TWO[0], lift=0.02)
-    assert ground_figures([judge_ground(truth, Ground(looked_at.boxes), regions(turned))])["wrong_slope"] == 1.0
-    assert ground_figures([judge_ground(truth, Ground(looked_at.boxes), regions(lifted))])["wrong_height"] == 1.0
+    assert ground_figures([judge_ground(ground, regions(turned))])["wrong_slope"] == 1.0
+    assert ground_figures([judge_ground(ground, regions(lifted))])["wrong_height"] == 1.0
 
 
 def test_the_higher_of_two_regions_is_the_ground():
-    truth, looked_at = seen(TWO[0])
+    ground = ground_of(TWO[0])
     below = top(TWO[0], lift=-0.05)
-    cells = judge_ground(truth, Ground(looked_at.boxes), regions(top(TWO[0]), below))
+    cells = judge_ground(ground, regions(top(TWO[0]), below))
     assert cells.wrong_height == 0
 
 
