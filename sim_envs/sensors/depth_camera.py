@@ -9,13 +9,16 @@ another thread, or never.
 
 from __future__ import annotations
 
+from functools import partial
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
 from sim_envs.sensors.depth_noise import DepthNoise, DepthNoiseModel
 from sim_envs.sensors.geom_mesh import geom_mesh
-from sim_envs.sensors.rasterizer import rasterize_depth
+from sim_envs.sensors.own_body import NO_BODY, OwnBody
+from sim_envs.sensors.rasterizer import in_view, rasterize_depth
 from sim_envs.sensors.snapshot import Snapshot
 from skills.geometry.camera import DepthImage, PinholeCamera
 from skills.geometry.pose import Array, Pose
@@ -41,6 +44,10 @@ class DepthCameraParameters:
         1.0, unit="1", minimum=0.05, maximum=1.0, meaning="share of the columns and rows that are rendered"
     )
 
+    body_margin: float = parameter(
+        0.01, unit="m", minimum=0.0, maximum=0.5, meaning="how much thicker the robot's own body is told than it is"
+    )
+
     @property
     def camera(self) -> PinholeCamera:
         """Intrinsics of the images."""
@@ -62,14 +69,28 @@ class DepthCamera:
     """Depth images of a MuJoCo model, the robot's own legs included.
 
     Its methods change nothing, so that several threads may share one camera.
+
+    Args:
+        model: what the camera sees.
+        parameters: optics.
+        noise: errors.
+        seed: of the errors.
+        body: the robot that carries the camera.
     """
 
     def __init__(
-        self, model: mujoco.MjModel, parameters: DepthCameraParameters, noise: DepthNoise, *, seed: int
+        self,
+        model: mujoco.MjModel,
+        parameters: DepthCameraParameters,
+        noise: DepthNoise,
+        *,
+        seed: int,
+        body: OwnBody = NO_BODY,
     ) -> None:
         self.parameters = parameters
         self.camera = parameters.camera
         self.mesh = geom_mesh(model)
+        self._body = body
         self._noise = DepthNoiseModel(noise, self.camera, seed)
         self._T_mount = Pose(self._noise.R_mount, np.zeros(3))
 
@@ -79,12 +100,13 @@ class DepthCamera:
         return self.parameters.rate
 
     def capture(self, snapshot: Snapshot) -> DepthImage:
-        """What the sensor delivers: noisy depth, and the pose that the robot believes in."""
+        """What the sensor delivers: noisy depth, and the poses of camera and body that the robot believes in."""
         T_world_true = snapshot.T_world_sensor @ self._T_mount
         clean = self.render(snapshot.geom_positions, snapshot.geom_rotations, T_world_true)
         depth = self._noise.corrupt(clean, snapshot.number)
         T_world_camera = snapshot.T_estimate_world @ snapshot.T_world_sensor
-        return DepthImage(depth, self.camera, T_world_camera, snapshot.time, snapshot.number)
+        body_world = self._body.capsules(snapshot, self.parameters.body_margin, partial(in_view, camera=self.camera))
+        return DepthImage(depth, self.camera, T_world_camera, snapshot.time, snapshot.number, body_world)
 
     def render(self, geom_positions: Array, geom_rotations: Array, T_world_camera: Pose) -> NDArray[np.float32]:
         """True depth, (height, width) float32 [m]; 0 where nothing is within range."""

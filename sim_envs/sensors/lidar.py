@@ -5,12 +5,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from sim_envs.sensors.lidar_caster import cast_ranges
+from sim_envs.sensors.lidar_caster import cast_ranges, in_field
 from sim_envs.sensors.lidar_noise import LidarNoise, LidarNoiseModel
+from sim_envs.sensors.own_body import NO_BODY, OwnBody
 from sim_envs.sensors.ray_shapes import ray_shapes
 from sim_envs.sensors.snapshot import Snapshot
 from skills.geometry.lidar import LidarScan, SpinningLidar
@@ -31,6 +34,10 @@ class LidarParameters:
     far: float = parameter(50.0, unit="m", minimum=1.0, maximum=500.0, meaning="farther ranges return nothing")
     rate: float = parameter(10.0, unit="Hz", minimum=0.1, maximum=100.0, meaning="scans a second of robot time")
 
+    body_margin: float = parameter(
+        0.05, unit="m", minimum=0.0, maximum=0.5, meaning="how much thicker the robot's own body is told than it is"
+    )
+
     @property
     def lidar(self) -> SpinningLidar:
         """Where the rays point."""
@@ -42,12 +49,31 @@ class Lidar:
     """Scans of a MuJoCo model, the robot's own arms included, each taken as if all at once.
 
     Its methods change nothing, so that several threads may share one lidar.
+
+    Args:
+        model: what the lidar sees.
+        parameters: rays.
+        noise: errors.
+        seed: of the errors.
+        body: the robot that carries the lidar.
+
+    Raises:
+        ValueError: where something visible has a shape that rays are not cast at.
     """
 
-    def __init__(self, model: mujoco.MjModel, parameters: LidarParameters, noise: LidarNoise, *, seed: int) -> None:
+    def __init__(
+        self,
+        model: mujoco.MjModel,
+        parameters: LidarParameters,
+        noise: LidarNoise,
+        *,
+        seed: int,
+        body: OwnBody = NO_BODY,
+    ) -> None:
         self.parameters = parameters
         self.lidar = parameters.lidar
         self.shapes = ray_shapes(model)
+        self._body = body
         self._noise = LidarNoiseModel(noise, self.lidar, seed)
         self._T_mount = Pose(self._noise.R_mount, np.zeros(3))
 
@@ -57,12 +83,13 @@ class Lidar:
         return self.parameters.rate
 
     def capture(self, snapshot: Snapshot) -> LidarScan:
-        """What the sensor delivers: noisy ranges, and the pose that the robot believes in."""
+        """What the sensor delivers: noisy ranges, and the poses of lidar and body that the robot believes in."""
         T_world_true = snapshot.T_world_sensor @ self._T_mount
         clean = self.render(snapshot.geom_positions, snapshot.geom_rotations, T_world_true)
         ranges = self._noise.corrupt(clean, snapshot.number)
         T_world_lidar = snapshot.T_estimate_world @ snapshot.T_world_sensor
-        return LidarScan(ranges, self.lidar, T_world_lidar, snapshot.time, snapshot.number)
+        body_world = self._body.capsules(snapshot, self.parameters.body_margin, partial(in_field, lidar=self.lidar))
+        return LidarScan(ranges, self.lidar, T_world_lidar, snapshot.time, snapshot.number, body_world)
 
     def render(self, geom_positions: Array, geom_rotations: Array, T_world_lidar: Pose) -> NDArray[np.float32]:
         """True ranges, (rings, columns) float32 [m]; 0 where nothing is within range."""

@@ -36,7 +36,7 @@ def cast_ranges(
     ranges = np.full((lidar.rings, lidar.columns), np.inf, dtype=np.float32)
     R_lidar_geom = T_world_lidar.R.T @ geom_rotations[shapes.geom_ids]
     p_lidar = (geom_positions[shapes.geom_ids] - T_world_lidar.p) @ T_world_lidar.R
-    windows = windows_of(p_lidar, shapes.radii, lidar)
+    windows = _windows(p_lidar, shapes.radii, lidar)
     azimuths, elevations = lidar.azimuths, lidar.elevations
     _cast(
         shapes.kinds,
@@ -52,7 +52,7 @@ def cast_ranges(
     return ranges
 
 
-def windows_of(centers_lidar: Array, radii: Array, lidar: SpinningLidar) -> NDArray[np.int64]:
+def _windows(centers_lidar: Array, radii: Array, lidar: SpinningLidar) -> NDArray[np.int64]:
     """Which rays can meet spheres: (first ring, ring after the last, first column, number of columns), (G, 4).
 
     The columns may run over the last one and on from 0. A sphere that is out of view has no rings.
@@ -75,6 +75,12 @@ def windows_of(centers_lidar: Array, radii: Array, lidar: SpinningLidar) -> NDAr
     count = np.minimum(np.floor((middle + half_width) / turn - 0.5) - first_column + 1, lidar.columns)
     rings = np.clip(np.stack((first_ring, end_ring)), 0, lidar.rings)
     return np.column_stack((*rings, first_column % lidar.columns, count)).astype(np.int64)
+
+
+def in_field(centers_lidar: Array, radii: Array, lidar: SpinningLidar) -> NDArray[np.bool_]:
+    """Which spheres a lidar may see, by centres in its frame (N, 3) and radii (N,) [m]: those that a ring can meet."""
+    windows = _windows(centers_lidar, radii, lidar)
+    return (windows[:, 0] < windows[:, 1]) & (windows[:, 3] > 0)
 
 
 @kernel

@@ -80,7 +80,7 @@ def _raster(
     p_camera = (geom_positions[mesh.geom_ids] - T_world_camera.p) @ R_camera_world.T
     centers_camera = np.einsum("gij,gj->gi", R_camera_geom, mesh.centers_geom) + p_camera
     _draw_geoms(
-        np.flatnonzero(_in_view(centers_camera, mesh.radii, camera)),
+        np.flatnonzero(in_view(centers_camera, mesh.radii, camera)),
         np.ascontiguousarray(R_camera_geom),
         p_camera,
         mesh.vertices_geom,
@@ -97,8 +97,8 @@ def _raster(
     return image
 
 
-def _in_view(centers_camera: Array, radii: Array, camera: PinholeCamera) -> NDArray[np.bool_]:
-    """Which spheres reach inside all planes that bound the view, (G,)."""
+def in_view(centers_camera: Array, radii: Array, camera: PinholeCamera) -> NDArray[np.bool_]:
+    """Which spheres a camera may see, by centres in its frame (N, 3) and radii (N,) [m]: those within its frustum."""
     left, right = -camera.cx / camera.fx, (camera.width - 1 - camera.cx) / camera.fx
     top, bottom = -camera.cy / camera.fy, (camera.height - 1 - camera.cy) / camera.fy
     inward = np.array([(1, 0, -left), (-1, 0, right), (0, 1, -top), (0, -1, bottom), (0, 0, 1), (0, 0, -1)])

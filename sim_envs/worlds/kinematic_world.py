@@ -18,7 +18,15 @@ from dm_control import mjcf
 
 from sim_envs.courses import Course, Ground
 from sim_envs.robot import Biped, RobotDescription, qpos_from_configuration
-from sim_envs.sensors import DepthCamera, DepthCameraParameters, DepthNoise, Lidar, LidarNoise, LidarParameters
+from sim_envs.sensors import (
+    DepthCamera,
+    DepthCameraParameters,
+    DepthNoise,
+    Lidar,
+    LidarNoise,
+    LidarParameters,
+    own_body,
+)
 from sim_envs.worlds.arena import CourseArena
 from sim_envs.worlds.box_motion import BoxMotions
 from sim_envs.worlds.falls import FallDetector, FallParameters
@@ -84,8 +92,11 @@ class KinematicWorld:
         self._arena, self._biped = CourseArena(course), Biped(self.robot)
         self._arena.add_free_entity(self._biped)
         self.physics = mjcf.Physics.from_mjcf_model(self._arena.mjcf_model)
-        self._camera = DepthCamera(self.model, camera or DepthCameraParameters(), noise or DepthNoise(), seed=seed)
-        self._lidar = Lidar(self.model, lidar or LidarParameters(), lidar_noise or LidarNoise(), seed=seed)
+        body = own_body(self.model, self._index(self._biped.camera_body))
+        self._camera = DepthCamera(
+            self.model, camera or DepthCameraParameters(), noise or DepthNoise(), seed=seed, body=body
+        )
+        self._lidar = Lidar(self.model, lidar or LidarParameters(), lidar_noise or LidarNoise(), seed=seed, body=body)
         self._images = SensorFrames(self._camera, self._index(self._biped.camera_body), self.robot.T_body_camera)
         self._scans = SensorFrames(self._lidar, self._index(self._biped.lidar_body), self.robot.T_body_lidar)
 
