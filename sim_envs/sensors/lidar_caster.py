@@ -1,7 +1,7 @@
 """Ranges of a spinning lidar by casting its rays at boxes, planes, ellipsoids, capsules and cylinders.
 
 Each shape is met in closed form in its own frame, and only by the rings and columns that can meet the sphere around
-it. A row of rays is one loop over neighbouring columns without a branch, so that the compiler makes vectors of it.
+it. All rays at one shape are one loop without a branch, so that the compiler can make vectors of it.
 Shapes are seen from outside only: a lidar inside one sees through it.
 """
 
@@ -95,40 +95,73 @@ def _cast(
     ranges: NDArray[Any],
 ) -> None:
     """Shorten the ranges to the nearest hit of each ray; o_geom is the lidar in the frame of each geom."""
-    columns = around.shape[1]
-    level = np.empty((3, columns))
-    d = np.empty((3, columns))
+    most = 0
     for g in range(kinds.shape[0]):
-        first, count = windows[g, 2], windows[g, 3]
-        for start, stop in ((first, min(first + count, columns)), (0, max(first + count - columns, 0))):
-            for k in range(3):
-                x, y = R_lidar_geom[g, 0, k], R_lidar_geom[g, 1, k]
-                for c in range(start, stop):
-                    level[k, c] = x * around[0, c] + y * around[1, c]
-            for r in range(windows[g, 0], windows[g, 1]):
-                for k in range(3):
-                    along, up = upward[0, r], upward[1, r] * R_lidar_geom[g, 2, k] + _TINY
-                    for c in range(start, stop):
-                        d[k, c] = along * level[k, c] + up
-                if kinds[g] == BOX:
-                    _meet_box(o_geom[g], sizes[g], d, start, stop, ranges[r])
-                elif kinds[g] == CAPSULE:
-                    _meet_capsule(o_geom[g], sizes[g], d, start, stop, ranges[r])
-                elif kinds[g] == CYLINDER:
-                    _meet_cylinder(o_geom[g], sizes[g], d, start, stop, ranges[r])
-                elif kinds[g] == ELLIPSOID:
-                    _meet_ellipsoid(o_geom[g], sizes[g], d, start, stop, ranges[r])
-                elif kinds[g] == PLANE:
-                    _meet_plane(o_geom[g], sizes[g], d, start, stop, ranges[r])
+        most = max(most, (windows[g, 1] - windows[g, 0]) * windows[g, 3])
+    level = np.empty((3, around.shape[1]))
+    d, t = np.empty((3, most)), np.empty(most)
+    for g in range(kinds.shape[0]):
+        n = _aim(windows[g], R_lidar_geom[g], around, upward, level, d)
+        if n == 0:
+            continue
+        if kinds[g] == BOX:
+            _meet_box(o_geom[g], sizes[g], d, n, t)
+        elif kinds[g] == CAPSULE:
+            _meet_capsule(o_geom[g], sizes[g], d, n, t)
+        elif kinds[g] == CYLINDER:
+            _meet_cylinder(o_geom[g], sizes[g], d, n, t)
+        elif kinds[g] == ELLIPSOID:
+            _meet_ellipsoid(o_geom[g], sizes[g], d, n, t)
+        elif kinds[g] == PLANE:
+            _meet_plane(o_geom[g], sizes[g], d, n, t)
+        _keep_nearest(windows[g], t, ranges)
 
 
 @kernel
-def _meet_box(o: NDArray[Any], size: NDArray[Any], d: NDArray[Any], start: int, stop: int, row: NDArray[Any]) -> None:
+def _aim(
+    window: NDArray[Any],
+    R_lidar_geom: NDArray[Any],
+    around: NDArray[Any],
+    upward: NDArray[Any],
+    level: NDArray[Any],
+    d: NDArray[Any],
+) -> int:
+    """Write the directions of a window's rays in the frame of a geom, ring by ring, and return their number."""
+    first_ring, end_ring, first, count = window
+    columns = around.shape[1]
+    for i in range(count):
+        c = first + i if first + i < columns else first + i - columns
+        for k in range(3):
+            level[k, i] = R_lidar_geom[0, k] * around[0, c] + R_lidar_geom[1, k] * around[1, c]
+    rings = end_ring - first_ring
+    for r in range(rings):
+        along, up = upward[0, first_ring + r], upward[1, first_ring + r]
+        for k in range(3):
+            rise = up * R_lidar_geom[2, k] + _TINY
+            for i in range(count):
+                d[k, r * count + i] = along * level[k, i] + rise
+    return rings * count
+
+
+@kernel
+def _keep_nearest(window: NDArray[Any], t: NDArray[Any], ranges: NDArray[Any]) -> None:
+    first_ring, end_ring, first, count = window
+    columns = ranges.shape[1]
+    for r in range(end_ring - first_ring):
+        for i in range(count):
+            c = first + i if first + i < columns else first + i - columns
+            hit = t[r * count + i]
+            if hit < ranges[first_ring + r, c]:
+                ranges[first_ring + r, c] = hit
+
+
+@kernel
+def _meet_box(o: NDArray[Any], size: NDArray[Any], d: NDArray[Any], n: int, t: NDArray[Any]) -> None:
     """Enter the last of three slabs before leaving the first of them."""
     ox, oy, oz = o[0], o[1], o[2]
     sx, sy, sz = size[0], size[1], size[2]
-    for c in range(start, stop):
-        ix, iy, iz = 1.0 / d[0, c], 1.0 / d[1, c], 1.0 / d[2, c]
+    for i in range(n):
+        ix, iy, iz = 1.0 / d[0, i], 1.0 / d[1, i], 1.0 / d[2, i]
         mx, my, mz = -ox * ix, -oy * iy, -oz * iz
         hx, hy, hz = sx * abs(ix), sy * abs(iy), sz * abs(iz)
         enter, leave = mx - hx, mx + hx
@@ -136,49 +169,42 @@ def _meet_box(o: NDArray[Any], size: NDArray[Any], d: NDArray[Any], start: int, 
         leave = my + hy if my + hy < leave else leave
         enter = mz - hz if mz - hz > enter else enter
         leave = mz + hz if mz + hz < leave else leave
-        hit = (enter <= leave) & (enter > 0.0) & (enter < row[c])
-        row[c] = enter if hit else row[c]
+        t[i] = enter if (enter <= leave) & (enter > 0.0) else np.inf
 
 
 @kernel
-def _meet_plane(o: NDArray[Any], size: NDArray[Any], d: NDArray[Any], start: int, stop: int, row: NDArray[Any]) -> None:
+def _meet_plane(o: NDArray[Any], size: NDArray[Any], d: NDArray[Any], n: int, t: NDArray[Any]) -> None:
     """Meet the rectangle z = 0 from above."""
     ox, oy, oz = o[0], o[1], o[2]
     sx, sy = size[0], size[1]
-    for c in range(start, stop):
-        t = -oz / d[2, c]
-        inside = (abs(ox + t * d[0, c]) <= sx) & (abs(oy + t * d[1, c]) <= sy)
-        hit = inside & (oz > 0.0) & (t > 0.0) & (t < row[c])
-        row[c] = t if hit else row[c]
+    for i in range(n):
+        s = -oz / d[2, i]
+        inside = (abs(ox + s * d[0, i]) <= sx) & (abs(oy + s * d[1, i]) <= sy)
+        t[i] = s if inside & (oz > 0.0) & (s > 0.0) else np.inf
 
 
 @kernel
-def _meet_ellipsoid(
-    o: NDArray[Any], size: NDArray[Any], d: NDArray[Any], start: int, stop: int, row: NDArray[Any]
-) -> None:
+def _meet_ellipsoid(o: NDArray[Any], size: NDArray[Any], d: NDArray[Any], n: int, t: NDArray[Any]) -> None:
     """Meet the unit sphere in a frame scaled by the semi-axes."""
     px, py, pz = 1.0 / size[0], 1.0 / size[1], 1.0 / size[2]
     ox, oy, oz = px * o[0], py * o[1], pz * o[2]
     outside = ox * ox + oy * oy + oz * oz - 1.0
-    for c in range(start, stop):
-        dx, dy, dz = px * d[0, c], py * d[1, c], pz * d[2, c]
+    for i in range(n):
+        dx, dy, dz = px * d[0, i], py * d[1, i], pz * d[2, i]
         square, toward = dx * dx + dy * dy + dz * dz, ox * dx + oy * dy + oz * dz
         rest = toward * toward - square * outside
-        t = (-toward - np.sqrt(rest if rest > 0.0 else 0.0)) / square
-        hit = (rest >= 0.0) & (t > 0.0) & (t < row[c])
-        row[c] = t if hit else row[c]
+        s = (-toward - np.sqrt(rest if rest > 0.0 else 0.0)) / square
+        t[i] = s if (rest >= 0.0) & (s > 0.0) else np.inf
 
 
 @kernel
-def _meet_capsule(
-    o: NDArray[Any], size: NDArray[Any], d: NDArray[Any], start: int, stop: int, row: NDArray[Any]
-) -> None:
+def _meet_capsule(o: NDArray[Any], size: NDArray[Any], d: NDArray[Any], n: int, t: NDArray[Any]) -> None:
     """Meet the endless cylinder about z; a ray that enters it beyond an end can only enter through that end's ball."""
     ox, oy, oz = o[0], o[1], o[2]
     radius, half = size[0], size[1]
     beside = ox * ox + oy * oy - radius * radius
-    for c in range(start, stop):
-        dx, dy, dz = d[0, c], d[1, c], d[2, c]
+    for i in range(n):
+        dx, dy, dz = d[0, i], d[1, i], d[2, i]
         square, toward = dx * dx + dy * dy + _TINY, ox * dx + oy * dy
         rest = toward * toward - square * beside
         t_side = (-toward - np.sqrt(rest if rest > 0.0 else 0.0)) / square
@@ -189,21 +215,18 @@ def _meet_capsule(
         rest_ball = toward_ball * toward_ball - length * (beside + ball * ball)
         t_ball = (-toward_ball - np.sqrt(rest_ball if rest_ball > 0.0 else 0.0)) / length
         on_side = abs(z) <= half
-        t = t_side if on_side else t_ball
-        hit = (rest >= 0.0) & (on_side | (rest_ball >= 0.0)) & (t > 0.0) & (t < row[c])
-        row[c] = t if hit else row[c]
+        s = t_side if on_side else t_ball
+        t[i] = s if (rest >= 0.0) & (on_side | (rest_ball >= 0.0)) & (s > 0.0) else np.inf
 
 
 @kernel
-def _meet_cylinder(
-    o: NDArray[Any], size: NDArray[Any], d: NDArray[Any], start: int, stop: int, row: NDArray[Any]
-) -> None:
+def _meet_cylinder(o: NDArray[Any], size: NDArray[Any], d: NDArray[Any], n: int, t: NDArray[Any]) -> None:
     """Meet the endless cylinder about z; a ray that enters it beyond an end can only enter through that end's disc."""
     ox, oy, oz = o[0], o[1], o[2]
     radius, half = size[0], size[1]
     beside = ox * ox + oy * oy - radius * radius
-    for c in range(start, stop):
-        dx, dy, dz = d[0, c], d[1, c], d[2, c]
+    for i in range(n):
+        dx, dy, dz = d[0, i], d[1, i], d[2, i]
         square, toward = dx * dx + dy * dy + _TINY, ox * dx + oy * dy
         rest = toward * toward - square * beside
         t_side = (-toward - np.sqrt(rest if rest > 0.0 else 0.0)) / square
@@ -211,6 +234,5 @@ def _meet_cylinder(
         t_end = ((half if z > 0.0 else -half) - oz) / dz
         x, y = ox + t_end * dx, oy + t_end * dy
         on_side = abs(z) <= half
-        t = t_side if on_side else t_end
-        hit = (rest >= 0.0) & (on_side | (x * x + y * y <= radius * radius)) & (t > 0.0) & (t < row[c])
-        row[c] = t if hit else row[c]
+        s = t_side if on_side else t_end
+        t[i] = s if (rest >= 0.0) & (on_side | (x * x + y * y <= radius * radius)) & (s > 0.0) else np.inf

@@ -23,7 +23,8 @@ def course(*boxes, events=(), start=(0.0, 0.0, 0.0)):
 
 def world(*boxes, **options):
     events, start = options.pop("events", ()), options.pop("start", (0.0, 0.0, 0.0))
-    return KinematicWorld(course(*boxes, events=events, start=start), camera=SMALL_CAMERA, **options)
+    options.setdefault("camera", SMALL_CAMERA)
+    return KinematicWorld(course(*boxes, events=events, start=start), **options)
 
 
 def steps(count, length=0.3, first=Side.LEFT, height=0.0):
