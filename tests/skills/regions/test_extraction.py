@@ -1,9 +1,6 @@
-import os
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 
-import cv2
 import numpy as np
 import pytest
 from block_fields import L515, Box, View, block, camera_pose, look, random_view, with_noise
@@ -196,30 +193,3 @@ def test_an_image_without_depth_has_no_regions(value):
 def test_parameters_out_of_range_are_refused():
     with pytest.raises(ValueError, match="area_min"):
         RegionParameters(area_min=-1.0)
-
-
-@pytest.mark.parametrize(
-    ("name", "scale", "camera"),
-    [
-        ("tum_fr3_1341848230.910894_depth.png", 5000.0, PinholeCamera(640, 480, 535.4, 539.2, 320.1, 247.6)),
-        ("icl_nuim_0_depth.png", 5000.0, PinholeCamera(640, 480, 481.2, 480.0, 319.5, 239.5)),
-    ],
-)
-def test_real_images_give_planes_that_their_points_lie_in(name, scale, camera):
-    folder = os.environ.get("LOOKSTEP_DATA")
-    path = Path(folder or "") / "depth" / name
-    if not folder or not path.exists():
-        pytest.skip(f"no {name}: LOOKSTEP_DATA names no folder that holds depth/{name}")
-    depth = (cv2.imread(str(path), cv2.IMREAD_UNCHANGED) / scale).astype(np.float32)
-    # Gravity is unknown: towards the camera counts as up.
-    image = DepthImage(depth, camera, Pose(np.diag((1.0, -1.0, -1.0)), np.zeros(3)), 0.0, 0)
-    parameters = RegionParameters(slope_max=np.pi / 2)
-    extraction = examine_regions(image, parameters)
-    areas = [region.area for region in extraction.regions.regions]
-    assert len(areas) >= 3 and max(areas) > 0.2
-    for label, region in zip(extraction.region_labels, extraction.regions.regions, strict=True):
-        v, u = np.nonzero(extraction.labels == label)
-        z = depth[v, u].astype(np.float64)
-        points = np.column_stack(((u - camera.cx) / camera.fx * z, (v - camera.cy) / camera.fy * z, z))[z > 0.0]
-        T_region_camera = region.T_world_region.inverse @ image.T_world_camera
-        assert np.median(np.abs((T_region_camera @ points)[:, 2])) < 0.01
