@@ -24,7 +24,7 @@ from lookstep.summary import installed_versions
 Figures = Mapping[str, float]
 
 OURS, BASELINE = "lookstep", "paper"
-_JSON_STAGES = ("depth", "depth_noise", "extract", "memory", "lidar")
+_JSON_STAGES = ("depth", "depth_noise", "extract", "memory", "lidar", "height_map")
 _PARTS = ("patches", "growing", "refinement", "polygons")
 
 
@@ -154,7 +154,10 @@ def bench_perception(extent: Extent, progress: Progress) -> PerceptionReport:
 
 def _table(title: str, names: Sequence[str], columns: Sequence[str], caption: str = "") -> Table:
     # As Text, because a unit in brackets would be taken for markup.
-    table = Table(title=Text(title), caption=Text(caption), title_justify="left", caption_justify="left", box=SIMPLE)
+    table = Table(
+        title=Text(title), caption=Text(caption), title_justify="left", caption_justify="left",
+        box=SIMPLE, pad_edge=False,
+    )  # fmt: skip
     for name in names:
         table.add_column(Text(name), no_wrap=True)
     for name in columns:

@@ -17,6 +17,7 @@ from lookstep.bench.perception.walk_frames import WalkFrames
 from lookstep.bench.subject import Progress
 from lookstep.bench.timing import Timing
 from lookstep.configuration import Configuration
+from skills.height_map import HeightMapper
 from skills.regions import RegionMemory, examine_regions
 from skills.regions.extraction import polygons_of
 from skills.regions.growing import grow_regions
@@ -34,8 +35,9 @@ STAGES = {
     "polygons": "regions: polygons, convex parts",
     "extract": "regions, whole",
     "baseline": "regions, the paper's method",
-    "memory": "region memory",
-    "lidar": "lidar scan",
+    "memory": "region memory update",
+    "lidar": "lidar scan with noise",
+    "height_map": "height map update",
 }
 """What is timed, and how people call it."""
 
@@ -66,7 +68,7 @@ class StageTimes:
 def time_stages(walked: WalkFrames, configuration: Configuration, progress: Progress) -> StageTimes:
     """Send every frame of a walk through every stage, in the order of the walk."""
     times = StageTimes()
-    memory = RegionMemory(configuration.region_memory)
+    memory, mapper = RegionMemory(configuration.region_memory), HeightMapper(configuration.height_map)
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)
     try:
@@ -83,7 +85,8 @@ def time_stages(walked: WalkFrames, configuration: Configuration, progress: Prog
             fine = times.timed("refinement", refine_regions, image, patches, coarse, parameters)
             times.timed("polygons", polygons_of, image, fine.labels, fine.planes, fine.sigma, fine.bend, parameters)
             times.timed("memory", memory.update, extraction.regions, frame.stance, image)
-            times.timed("lidar", walked.lidar.capture, frame.lidar)
+            scan = times.timed("lidar", walked.lidar.capture, frame.lidar)
+            times.timed("height_map", mapper.update, scan, frame.stance.mid_feet, walked.goal[:2])
     finally:
         cv2.setNumThreads(threads)
     return times

@@ -22,7 +22,7 @@ def test_perception_writes_its_figures_for_programs_and_people(least, tmp_path, 
     figures_file, table_file = tmp_path / "figures.json", tmp_path / "table.md"
     assert main(["bench", "perception", "--quick", "--json", str(figures_file), "--table", str(table_file)]) == 0
     figures = json.loads(figures_file.read_text())
-    for stage in ("depth_ms", "depth_noise_ms", "extract_ms", "memory_ms", "lidar_ms", "baseline_ms"):
+    for stage in ("depth_ms", "depth_noise_ms", "extract_ms", "memory_ms", "lidar_ms", "height_map_ms", "baseline_ms"):
         assert 0.0 < figures[stage]["median"] <= figures[stage]["p99"]
     assert figures["baseline_ratio"] > 0.0
     for kind in ("quality", "contiguous", "baseline_quality", "baseline_contiguous"):

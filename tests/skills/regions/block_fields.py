@@ -37,23 +37,6 @@ def block(x: float, y: float, top: float, size=(0.37, 0.39, 0.6), roll=0.0, pitc
     return Box(Pose(R, np.array([x, y, top]) - R @ np.array([0.0, 0.0, half[2]])), half)
 
 
-def rough_field(seed: int, tilted=0.34, height=0.05, rows=19) -> list[Box]:
-    """A start pad and three touching columns of blocks, some tilted by 11-18 degrees about x or y."""
-    rng = np.random.default_rng(seed)
-    boxes = [block(-0.4, 0.0, 0.0, size=(1.2, 1.2, 0.6))]
-    for row in range(rows):
-        x = 0.2 + 0.37 * (row + 0.5)
-        profile = 0.4 * np.sin(np.pi * (row + 0.5) / rows)
-        for column in range(3):
-            roll = pitch = 0.0
-            if rng.random() < tilted:
-                tilt = np.deg2rad(rng.uniform(11.0, 18.0)) * rng.choice((-1.0, 1.0))
-                roll, pitch = (tilt, 0.0) if rng.random() < 0.5 else (0.0, tilt)
-            top = profile + rng.uniform(-height, height)
-            boxes.append(block(x, 0.39 * (column - 1), top, roll=roll, pitch=pitch))
-    return boxes
-
-
 def camera_pose(x: float, ground: float = 0.0, y=0.0, yaw=0.0, down=0.82, roll=0.0, height=1.05) -> Pose:
     """A camera above (x, y), looking along yaw and down."""
     c, s = np.cos(down), np.sin(down)
@@ -108,13 +91,3 @@ def with_noise(image: DepthImage, seed: int, correlated=0.002) -> DepthImage:
     lost = edge & (rng.random(depth.shape) < 0.5)
     noisy = np.where(valid & ~lost, depth + noise, 0.0).astype(np.float32)
     return DepthImage(noisy, image.camera, image.T_world_camera, image.time, image.frame_id)
-
-
-def random_view(seed: int, camera: PinholeCamera = L515, **field) -> tuple[list[Box], View]:
-    """A rough field and a noise-free view of it from a random place along the way."""
-    rng = np.random.default_rng(1000 + seed)
-    boxes = rough_field(seed, **field)
-    x, y = rng.uniform(-0.2, 5.0), rng.uniform(-0.1, 0.1)
-    ground = max(box.top.p[2] for box in boxes if abs(box.top.p[0] - x) < 0.4 or box is boxes[0])
-    yaw, roll, pitch = np.deg2rad(rng.uniform((-10.0, -3.0, 44.0), (10.0, 3.0, 50.0)))
-    return boxes, look(boxes, camera_pose(x, ground, y, yaw, pitch, roll), camera, time=0.1 * seed, frame_id=seed)
