@@ -1,4 +1,9 @@
-"""The robot as all leaves of one tick see it: one snapshot of its state, and a list of the commands sent to it."""
+"""The robot as all leaves of one tick see it: one snapshot of its state, and a list of the commands sent to it.
+
+A robot estimates where it is in a frame that drifts, its odometry; leaves work in a world that stays. Whoever finds out
+how the two lie to each other says so with `correct`: from then on everything that comes from the robot is moved into
+the world here, and every command is moved back.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +11,7 @@ from behaviors.robot import Robot
 from skills.footsteps.footstep import Footstep
 from skills.geometry.camera import DepthImage
 from skills.geometry.lidar import LidarScan
+from skills.geometry.pose import IDENTITY, Pose
 from skills.walking.walking_state import RobotState, StepEvent, WalkingStatus
 
 Command = tuple[str, tuple[Footstep, ...]]
@@ -19,6 +25,7 @@ class RobotView:
         time: robot time at the start of the tick [s].
         events: step events since the last tick, oldest first; drained once, so that no leaf takes them from another.
         commands: names and arguments of the commands sent this tick, in order.
+        T_world_odometry: what takes the robot's estimates into the world.
     """
 
     def __init__(self, robot: Robot) -> None:
@@ -26,43 +33,68 @@ class RobotView:
         self.time = robot.time
         self.events: tuple[StepEvent, ...] = ()
         self.commands: list[Command] = []
+        self.T_world_odometry = IDENTITY
+        self._estimated_state: RobotState | None = None
+        self._estimated_status: WalkingStatus | None = None
         self._state: RobotState | None = None
         self._status: WalkingStatus | None = None
 
     def begin_tick(self) -> None:
         """Forget the last tick's snapshot and take the events since."""
-        self._state = None
-        self._status = None
+        self._estimated_state = self._state = None
+        self._estimated_status = self._status = None
         self.commands = []
         self.time = self.robot.time
-        self.events = self.robot.drain_events()
+        events = self.robot.drain_events()
+        self.events = tuple(event.moved(self.T_world_odometry) for event in events) if self._corrected else events
+
+    def correct(self, T_world_odometry: Pose) -> None:
+        """Say what takes the robot's estimates into the world from now on, this tick's snapshot included."""
+        self.T_world_odometry = T_world_odometry
+        self._state = self._status = None
 
     def state(self) -> RobotState:
         """The estimated state of this tick."""
         if self._state is None:
-            self._state = self.robot.state()
+            if self._estimated_state is None:
+                self._estimated_state = self.robot.state()
+            state = self._estimated_state
+            self._state = state.moved(self.T_world_odometry) if self._corrected else state
         return self._state
 
     def status(self) -> WalkingStatus:
         """What the walking controller was doing when this tick began to look."""
         if self._status is None:
-            self._status = self.robot.status()
+            if self._estimated_status is None:
+                self._estimated_status = self.robot.status()
+            status = self._estimated_status
+            self._status = status.moved(self.T_world_odometry) if self._corrected else status
         return self._status
 
     def depth_image(self) -> DepthImage | None:
         """The newest depth image; None before the first."""
-        return self.robot.depth_image()
+        image = self.robot.depth_image()
+        return image.moved(self.T_world_odometry) if image is not None and self._corrected else image
 
     def lidar_scan(self) -> LidarScan | None:
         """The newest lidar scan; None before the first."""
-        return self.robot.lidar_scan()
+        scan = self.robot.lidar_scan()
+        return scan.moved(self.T_world_odometry) if scan is not None and self._corrected else scan
 
     def send_footsteps(self, steps: tuple[Footstep, ...]) -> None:
         """Replace all queued steps; the step whose swing is under way goes on."""
         self.commands.append(("send_footsteps", steps))
+        if self._corrected:
+            T_odometry_world = self.T_world_odometry.inverse
+            steps = tuple(step.moved(T_odometry_world) for step in steps)
         self.robot.send_footsteps(steps)
 
     def pause_walking(self) -> None:
         """Finish the current step, then stand; queued steps are dropped."""
         self.commands.append(("pause_walking", ()))
         self.robot.pause_walking()
+
+    @property
+    def _corrected(self) -> bool:
+        """Without a correction everything passes through as it is."""
+        return self.T_world_odometry is not IDENTITY

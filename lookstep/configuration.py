@@ -15,11 +15,11 @@ from typing import Any, get_type_hints
 from sim_envs.judge import JudgeParameters
 from sim_envs.robot import RobotDescription
 from sim_envs.sensors import DepthCameraParameters, DepthNoise, LidarNoise, LidarParameters
-from sim_envs.worlds import FallParameters, KinematicWorldParameters
+from sim_envs.worlds import FallParameters, KinematicWorldParameters, StateDriftParameters
 from skills.body_path import SubGoalParameters
 from skills.footsteps import FootstepParameters, TerrainParameters
 from skills.height_map import HeightMapParameters
-from skills.regions import MemoryParameters, RegionParameters
+from skills.regions import MemoryParameters, RegionParameters, RegistrationParameters
 from skills.walking import WalkingParameters
 from strict_yaml import (
     Entry,
@@ -52,12 +52,14 @@ class Configuration:
     lidar: LidarParameters
     lidar_noise: LidarNoise
     world: KinematicWorldParameters
+    drift: StateDriftParameters
     falls: FallParameters
     judge: JudgeParameters
     walking: WalkingParameters
     regions: RegionParameters
     region_memory: MemoryParameters
     height_map: HeightMapParameters
+    registration: RegistrationParameters
     sub_goal: SubGoalParameters
     footsteps: FootstepParameters
     terrain: TerrainParameters

@@ -14,7 +14,7 @@ from sim_envs.courses import load_course
 from skills.body_path import straight_path, sub_goal
 from skills.footsteps import plan_from_stance, terrain_ahead
 from skills.height_map import HeightMapper
-from skills.regions import RegionMemory, examine_regions
+from skills.regions import MapParameters, RegionMemory, examine_regions, remember
 
 
 def warm_up(configuration: Configuration) -> None:
@@ -25,8 +25,13 @@ def warm_up(configuration: Configuration) -> None:
     assert image is not None and scan is not None, "the world takes its first frames when it is made"
     stance = world.status().imminent_stance
     extraction = examine_regions(image, configuration.regions)
-    ground = RegionMemory(configuration.region_memory).update(extraction.regions, stance, image)
     HeightMapper(configuration.height_map).update(scan, stance.mid_feet)
+    parameters = MapParameters.of(configuration.region_memory, configuration.registration, configuration.footsteps)
+    memory = RegionMemory()
+    for _ in range(2):  # The second look is registered against the first.
+        memory = remember(memory, extraction.regions, stance, image, parameters)
+    ground = memory.ground
+    assert ground is not None, "it has just been looked at"
     path = straight_path(np.array(course.start), np.array(course.goal))
     goal = sub_goal(path, stance, configuration.sub_goal)
     terrain = terrain_ahead(ground, stance, goal, configuration.footsteps, configuration.terrain)

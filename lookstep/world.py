@@ -20,4 +20,5 @@ def build_world(course: Course, configuration: Configuration, seed: int = 0) -> 
         lidar=configuration.lidar,
         lidar_noise=configuration.lidar_noise,
         falls=configuration.falls,
+        drift=configuration.drift,
     )

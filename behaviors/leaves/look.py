@@ -4,11 +4,19 @@ from __future__ import annotations
 
 from py_trees.common import Status
 
-from behaviors.leaf import Call, Leaf, SkillLeaf, SkillParameters
+from behaviors.leaf import Call, SkillLeaf, SkillParameters
 from behaviors.ports import Input, Output
 from behaviors.registry import leaf
 from skills.parameters import parameter, parameters
-from skills.regions import PlanarRegions, RegionExtraction, RegionMemory, examine_regions
+from skills.regions import (
+    GroundUpdate,
+    MapParameters,
+    PlanarRegions,
+    RegionExtraction,
+    RegionMemory,
+    examine_regions,
+    remember,
+)
 
 
 @parameters
@@ -47,19 +55,40 @@ class ExtractRegions(SkillLeaf):
         return self.succeeded()
 
 
-@leaf
-class RememberGround(Leaf):
-    """Joins the regions of recent images into one map, with support under feet that the camera cannot see."""
+@parameters
+class RememberGroundParameters(SkillParameters):
+    """How long joining a frame may take."""
 
+    latency: float = parameter(
+        0.02, unit="s", meaning="robot time until the map is delivered", minimum=0.0, maximum=60.0
+    )
+
+
+@leaf
+class RememberGround(SkillLeaf):
+    """Joins the regions of recent images into one map, and takes the drift of the robot's estimate out."""
+
+    Parameters = RememberGroundParameters
     extraction = Input(RegionExtraction, "regions of one depth image")
     ground = Output(PlanarRegions, "planar regions around the robot")
+    update = Output(GroundUpdate, "what the newest image changed in the map, and how far the estimate had drifted")
 
     def setup(self) -> None:
         """Nothing is remembered yet."""
-        self._memory = RegionMemory(self.context.parameters["region_memory"])
+        self._memory = RegionMemory()
 
-    def tick(self) -> Status:
-        """Add the newest regions to the map."""
+    def request(self) -> Call | Status:
+        """Join the newest regions to the map."""
+        subjects = self.context.parameters
+        parameters = MapParameters.of(subjects["region_memory"], subjects["registration"], subjects["footsteps"])
         stance = self.context.robot.status().imminent_stance
-        self.ground = self._memory.update(self.extraction.regions, stance, self.extraction.image)
-        return self.succeeded()
+        extraction = self.extraction
+        return self.call(remember, self._memory, extraction.regions, stance, extraction.image, parameters)
+
+    def receive(self, result: RegionMemory) -> Status:
+        """Hand the map on; from now on the robot is where the map says it is."""
+        self._memory = result
+        self.ground, self.update = result.ground, result.update
+        assert result.update is not None, "a frame has just been joined"
+        self.context.robot.correct(result.update.T_world_odometry)
+        return self.succeeded(result.update.summary)

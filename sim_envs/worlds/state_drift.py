@@ -6,11 +6,9 @@ the other way when they are given; what the estimate drifts while a step is unde
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from skills.footsteps.footstep import Footstep, Stance
+from skills.footsteps.footstep import Footstep
 from skills.geometry.pose import Array, Pose, rotation_z
 from skills.parameters import parameter, parameters
 from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingStatus
@@ -56,53 +54,20 @@ class StateDrift:
 
     def estimated_state(self, state: RobotState) -> RobotState:
         """What the robot believes of its true state."""
-        if self._none:
-            return state
-        T = self.T_estimate_world
-        return replace(
-            state,
-            T_world_pelvis=T @ state.T_world_pelvis,
-            stance=_moved_stance(T, state.stance),
-            com_world=T @ state.com_world,
-            dcm_world=T @ state.dcm_world,
-        )
+        return state if self._none else state.moved(self.T_estimate_world)
 
     def estimated_status(self, status: WalkingStatus) -> WalkingStatus:
         """The walking controller's steps where the robot believes them to be."""
-        if self._none:
-            return status
-        T = self.T_estimate_world
-        return replace(
-            status,
-            current_step=None if status.current_step is None else _moved_step(T, status.current_step),
-            queue=tuple(_moved_step(T, step) for step in status.queue),
-            imminent_stance=_moved_stance(T, status.imminent_stance),
-        )
+        return status if self._none else status.moved(self.T_estimate_world)
 
     def estimated_event(self, event: StepEvent) -> StepEvent:
         """A step's event where the robot believes it happened."""
-        if self._none:
-            return event
-        T = self.T_estimate_world
-        return replace(event, step=_moved_step(T, event.step), T_world_sole=T @ event.T_world_sole)
+        return event if self._none else event.moved(self.T_estimate_world)
 
     def estimated_sample(self, sample: ControlSample) -> ControlSample:
         """A line of the control-rate log as the robot believes it."""
-        if self._none:
-            return sample
-        names = ("com_world", "dcm_world", "dcm_reference_world", "cop_world")
-        return replace(sample, **{name: self.T_estimate_world @ getattr(sample, name) for name in names})
+        return sample if self._none else sample.moved(self.T_estimate_world)
 
     def true_step(self, step: Footstep) -> Footstep:
         """Where a step that the robot commands now lies in the world."""
-        if self._none:
-            return step
-        return _moved_step(self.T_estimate_world.inverse, step)
-
-
-def _moved_stance(T: Pose, stance: Stance) -> Stance:
-    return Stance(T @ stance.T_world_left, T @ stance.T_world_right)
-
-
-def _moved_step(T: Pose, step: Footstep) -> Footstep:
-    return replace(step, T_world_sole=T @ step.T_world_sole, swing_waypoints_world=T @ step.swing_waypoints_world)
+        return step if self._none else step.moved(self.T_estimate_world.inverse)

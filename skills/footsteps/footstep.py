@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -48,6 +48,10 @@ class Stance:
             return Stance(T_world_sole, self.T_world_right)
         return Stance(self.T_world_left, T_world_sole)
 
+    def moved(self, T: Pose) -> Stance:
+        """The same stance seen from another frame."""
+        return Stance(T @ self.T_world_left, T @ self.T_world_right)
+
     @property
     def mid_feet(self) -> Array:
         """Point midway between the soles, (3,) in the world [m]."""
@@ -87,6 +91,10 @@ class Footstep:
         object.__setattr__(self, "foothold_sole", readonly(self.foothold_sole, (None, 2)))
         waypoints = np.asarray(self.swing_waypoints_world, dtype=np.float64).reshape(-1, 3)
         object.__setattr__(self, "swing_waypoints_world", readonly(waypoints))
+
+    def moved(self, T: Pose) -> Footstep:
+        """The same step seen from another frame."""
+        return replace(self, T_world_sole=T @ self.T_world_sole, swing_waypoints_world=T @ self.swing_waypoints_world)
 
 
 class PlanOutcome(Enum):

@@ -6,13 +6,13 @@ forward); depth is the coordinate along z, not along the ray. Integer pixel coor
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.capsule import Capsule
-from skills.geometry.pose import Pose
+from skills.geometry.pose import IDENTITY, Pose
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +54,7 @@ class DepthImage:
         time: robot time of the frame [s].
         frame_id: counts frames from 0.
         body_world: parts of the robot that the camera may see, where they were believed to be.
+        T_world_odometry: what has been done to these poses since the robot estimated them.
     """
 
     depth: NDArray[np.float32]
@@ -62,9 +63,19 @@ class DepthImage:
     time: float
     frame_id: int
     body_world: tuple[Capsule, ...] = ()
+    T_world_odometry: Pose = IDENTITY
 
     def __post_init__(self) -> None:
         expected = (self.camera.height, self.camera.width)
         if self.depth.shape != expected or self.depth.dtype != np.float32:
             raise ValueError(f"got depth {self.depth.shape} {self.depth.dtype}, needs {expected} float32")
         self.depth.flags.writeable = False
+
+    def moved(self, T: Pose) -> DepthImage:
+        """The same image seen from another frame."""
+        return replace(
+            self,
+            T_world_camera=T @ self.T_world_camera,
+            body_world=tuple(capsule.moved(T) for capsule in self.body_world),
+            T_world_odometry=T @ self.T_world_odometry,
+        )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from skills.geometry.pose import Array, readonly
+from skills.geometry.pose import Array, Pose, readonly
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -23,3 +23,7 @@ class Capsule:
     def __post_init__(self) -> None:
         for name in ("start_world", "end_world"):
             object.__setattr__(self, name, readonly(getattr(self, name), (3,)))
+
+    def moved(self, T: Pose) -> Capsule:
+        """The same capsule seen from another frame."""
+        return Capsule(T @ self.start_world, T @ self.end_world, self.radius)

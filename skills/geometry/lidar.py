@@ -7,7 +7,7 @@ turns clockwise sees it. Range is the distance along that ray.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,3 +70,8 @@ class LidarScan:
         if self.ranges.shape != expected or self.ranges.dtype != np.float32:
             raise ValueError(f"got ranges {self.ranges.shape} {self.ranges.dtype}, needs {expected} float32")
         self.ranges.flags.writeable = False
+
+    def moved(self, T: Pose) -> LidarScan:
+        """The same scan seen from another frame."""
+        body = tuple(capsule.moved(T) for capsule in self.body_world)
+        return replace(self, T_world_lidar=T @ self.T_world_lidar, body_world=body)

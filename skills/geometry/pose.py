@@ -120,6 +120,9 @@ class Pose:
         return other @ self.R.T + self.p
 
 
+IDENTITY = Pose.identity()
+
+
 def rotation_x(angle: float) -> Array:
     """Rotation about x by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)

@@ -7,9 +7,15 @@ from skills.regions.noise_level import NoiseLevel
 from skills.regions.parameters import RegionParameters
 from skills.regions.pieces import PixelKind, kind_of_pixels, piece_of_pixels
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
-from skills.regions.region_memory import RegionMemory
+from skills.regions.region_memory import Forgotten, GroundUpdate, MapParameters, RegionMemory, remember
+from skills.regions.registration import Drift
+from skills.regions.registration_parameters import RegistrationParameters
 
 __all__ = [
+    "Drift",
+    "Forgotten",
+    "GroundUpdate",
+    "MapParameters",
     "MemoryParameters",
     "NoiseLevel",
     "PixelKind",
@@ -18,6 +24,7 @@ __all__ = [
     "RegionExtraction",
     "RegionMemory",
     "RegionParameters",
+    "RegistrationParameters",
     "RejectedRegion",
     "debug_image",
     "examine_regions",
@@ -25,4 +32,5 @@ __all__ = [
     "kind_of_pixels",
     "piece_of_pixels",
     "region_colors",
+    "remember",
 ]

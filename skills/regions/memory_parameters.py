@@ -33,5 +33,3 @@ class MemoryParameters:
     start_support: float = parameter(
         3.0, unit="1", minimum=1.0, maximum=5.0, meaning="assumed ground around the soles at the start, in soles"
     )
-    sole_length: float = parameter(0.26, unit="m", minimum=0.05, maximum=1.0, meaning="length of a sole")
-    sole_width: float = parameter(0.138, unit="m", minimum=0.02, maximum=1.0, meaning="width of a sole")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -36,6 +36,10 @@ class PlanarRegion:
         for name in ("holes_region", "convex_parts_region"):
             object.__setattr__(self, name, tuple(readonly(part, (None, 2)) for part in getattr(self, name)))
 
+    def moved(self, T: Pose) -> PlanarRegion:
+        """The same region seen from another frame."""
+        return replace(self, T_world_region=T @ self.T_world_region)
+
     @property
     def normal_world(self) -> Array:
         """Unit upward normal, (3,)."""
@@ -60,3 +64,7 @@ class PlanarRegions:
     regions: tuple[PlanarRegion, ...]
     time: float
     frame_id: int
+
+    def moved(self, T: Pose) -> PlanarRegions:
+        """The same regions seen from another frame."""
+        return replace(self, regions=tuple(region.moved(T) for region in self.regions))

@@ -1,101 +1,213 @@
 """What the robot remembers of the ground: regions of recent frames, fused with the newest.
 
-The camera looks ahead, so the ground under and behind the feet is known only from earlier frames. Frames are kept when
-the camera has moved; the newest always counts. Regions are compared on a horizontal grid: an old one is dropped once
-it is old, far, covered by newer ones, or seen differently by the newest frame. Where a foot stands on ground that no
-frame has shown there must be ground under the sole; where the robot starts, before it has moved, the ground is assumed
-to go on around the soles, because a first step must land between them and what the camera sees.
+The camera looks ahead, so the ground under and behind the feet is known only from earlier frames. Each frame is brought
+onto the ground known before, which takes the drift of the robot's estimate out; frames are kept when the camera has
+moved, and the newest always counts. Regions are compared on a horizontal grid: an old one is dropped once it is old,
+far, covered by newer ones, or seen differently by the newest frame. Where a foot stands on ground that no frame has
+shown there must be ground under the sole; where the robot starts, before it has moved, the ground is assumed to go on
+around the soles, because a first step must land between them and what the camera sees.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from typing import NamedTuple
+from dataclasses import dataclass, replace
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from skills.footsteps.footstep import Side, Stance
 from skills.geometry.camera import DepthImage
 from skills.geometry.polygon import contains_points
-from skills.geometry.pose import Pose
+from skills.geometry.pose import IDENTITY, Pose
 from skills.regions.height_grid import Cells, Comparison, HeightGrid, cells_of
+from skills.regions.height_reference import HeightReference, updated
 from skills.regions.memory_parameters import MemoryParameters
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
+from skills.regions.registration import Drift, register
+from skills.regions.registration_parameters import RegistrationParameters
 
-EXPIRED, FAR, COVERED, CHANGED, VANISHED, TOO_MANY = "expired", "far", "covered", "changed", "vanished", "too many"
+EXPIRED, FAR, COVERED, CHANGED, VANISHED, TOO_MANY = (
+    "too old",
+    "too far",
+    "covered by newer ones",
+    "seen differently",
+    "seen through",
+    "too many",
+)
 
 
-class RegionMemory:
-    """Fuses the regions of each new frame with those of earlier ones."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Forgotten:
+    """A region that is no longer in the map.
 
-    def __init__(self, parameters: MemoryParameters | None = None) -> None:
-        self.parameters = parameters or MemoryParameters()
-        self._kept: tuple[_Remembered, ...] = ()
-        self._T_world_key: Pose | None = None
-        self._start: Stance | None = None
-        self._dropped: tuple[tuple[str, int], ...] = ()
+    Attributes:
+        region: the region.
+        reason: why, as a short phrase for the operator.
+    """
+
+    region: PlanarRegion
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroundUpdate:
+    """What one frame has changed in the map.
+
+    Attributes:
+        forgotten: regions that were dropped, newest first.
+        drift: how the frame lay to the ground known before.
+        T_world_odometry: what takes the robot's estimates into the world since then.
+    """
+
+    forgotten: tuple[Forgotten, ...]
+    drift: Drift
+    T_world_odometry: Pose
 
     @property
-    def dropped(self) -> tuple[tuple[str, int], ...]:
-        """How many old regions the last update dropped, by reason."""
-        return self._dropped
+    def reasons(self) -> tuple[tuple[str, int], ...]:
+        """How many regions were dropped, by reason."""
+        return tuple(sorted(Counter(forgotten.reason for forgotten in self.forgotten).items()))
 
-    def reset(self) -> None:
-        """Forget everything."""
-        self._kept, self._T_world_key, self._start, self._dropped = (), None, None, ()
+    @property
+    def summary(self) -> str:
+        """What has changed, in one line for the operator."""
+        forgotten = ", ".join(f"{count} {reason}" for reason, count in self.reasons)
+        drift = self.drift.reason or f"estimate corrected by {1e3 * np.linalg.norm(self.drift.shift_turn[:3]):.0f} mm"
+        return f"{drift}; forgot {forgotten}" if forgotten else drift
 
-    def update(self, regions: PlanarRegions, stance: Stance, image: DepthImage) -> PlanarRegions:
-        """The ground as known now, oldest region first.
 
-        Args:
-            regions: regions of the newest frame.
-            stance: where the feet are.
-            image: the newest frame; it tells where the camera is, and through which old regions it sees.
-        """
-        reasons: Counter[str] = Counter()
-        is_key = self._is_key(image.T_world_camera)
-        newest = tuple(_Remembered(region, cells_of(region, self.parameters.cell)) for region in regions.regions)
-        kept = self._remember(newest, regions.time, stance, image, is_key, reasons)
-        known = tuple(remembered.region for remembered in (*kept, *newest))
-        unseen = [side for side in Side if not self._stands_on(stance.sole(side), known)]
-        supports = tuple(self._support(side, stance, regions.time) for side in unseen)
-        self._kept = kept
-        if is_key:
-            self._T_world_key, self._kept = image.T_world_camera, (*kept, *newest)
-        self._dropped = tuple(sorted(reasons.items()))
-        return PlanarRegions((*supports, *known), regions.time, regions.frame_id)
+@dataclass(frozen=True, slots=True, eq=False)
+class RegionMemory:
+    """The map after a frame, and what is needed to join the next.
 
-    def _remember(
+    Attributes:
+        ground: the ground as known now, oldest region first; None before the first frame.
+        update: what the newest frame has changed; None before the first frame.
+    """
+
+    ground: PlanarRegions | None = None
+    update: GroundUpdate | None = None
+    kept: tuple[Remembered, ...] = ()
+    T_world_key: Pose | None = None
+    start: Stance | None = None
+    reference: HeightReference | None = None
+
+
+class Sole(Protocol):
+    """Whatever knows the size of a sole."""
+
+    @property
+    def sole_length(self) -> float:
+        """From heel to toe [m]."""
+        ...
+
+    @property
+    def sole_width(self) -> float:
+        """From side to side [m]."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class MapParameters:
+    """All numbers behind the map.
+
+    Attributes:
+        memory: what is remembered.
+        registration: how drift is found.
+        sole_length, sole_width: size of a sole [m].
+    """
+
+    memory: MemoryParameters
+    registration: RegistrationParameters
+    sole_length: float
+    sole_width: float
+
+    @classmethod
+    def of(cls, memory: MemoryParameters, registration: RegistrationParameters, sole: Sole) -> MapParameters:
+        """The numbers of two subjects, and the sole's size from whatever knows it."""
+        return cls(memory, registration, sole.sole_length, sole.sole_width)
+
+
+def remember(
+    memory: RegionMemory, regions: PlanarRegions, stance: Stance, image: DepthImage, parameters: MapParameters
+) -> RegionMemory:
+    """Join a frame to the map.
+
+    Args:
+        memory: the map before.
+        regions: regions of the frame.
+        stance: where the feet are, as estimated like the frame's poses.
+        image: the frame; it tells where the camera is, and through which old regions it sees.
+        parameters: numbers.
+    """
+    before = None if memory.update is None else memory.update.drift
+    drift = register(regions, image, memory.reference, before, parameters.registration)
+    T = drift.T_world_frame
+    if T is not IDENTITY:
+        regions, stance, image = regions.moved(T), stance.moved(T), image.moved(T)
+    return _Frame(memory, regions, stance, image, parameters).joined(drift)
+
+
+class _Frame:
+    """One frame that joins a map."""
+
+    def __init__(
         self,
-        newest: tuple[_Remembered, ...],
-        now: float,
+        memory: RegionMemory,
+        regions: PlanarRegions,
         stance: Stance,
         image: DepthImage,
-        is_key: bool,
-        reasons: Counter[str],
-    ) -> tuple[_Remembered, ...]:
-        """The old regions that still hold; counts why the others do not."""
-        grid = HeightGrid(stance.mid_feet, self.parameters.radius, self.parameters.cell)
+        parameters: MapParameters,
+    ) -> None:
+        self._memory, self._regions, self._stance, self._image = memory, regions, stance, image
+        self._parameters = parameters.memory
+        self._all_parameters = parameters
+        self._start = memory.start or stance
+        self._is_key = self._moved_on(image.T_world_camera)
+
+    def joined(self, drift: Drift) -> RegionMemory:
+        """The map with this frame in it."""
+        now, cell = self._regions.time, self._parameters.cell
+        newest = tuple(Remembered(region, cells_of(region, cell)) for region in self._regions.regions)
+        kept, forgotten = self._remember(newest)
+        known = tuple(remembered.region for remembered in (*kept, *newest))
+        unseen = [side for side in Side if not self._stands_on(self._stance.sole(side), known)]
+        supports = tuple(self._support(side, now) for side in unseen)
+        ground = PlanarRegions((*supports, *known), now, self._regions.frame_id)
+        change = GroundUpdate(forgotten, drift, self._image.T_world_odometry)
+        memory = replace(self._memory, ground=ground, update=change, kept=kept, start=self._start)
+        if not self._is_key:
+            return memory
+        T_world_camera, registration = self._image.T_world_camera, self._all_parameters.registration
+        reference = updated(self._memory.reference, self._regions, T_world_camera, registration)
+        return replace(memory, kept=(*kept, *newest), T_world_key=T_world_camera, reference=reference)
+
+    def _remember(self, newest: tuple[Remembered, ...]) -> tuple[tuple[Remembered, ...], tuple[Forgotten, ...]]:
+        """The old regions that still hold, and the others."""
+        parameters, old = self._parameters, self._memory.kept
+        grid = HeightGrid(self._stance.mid_feet, parameters.radius, parameters.cell)
         for remembered in newest:
             grid.paint(remembered.cells)
         grid.freeze()
-        vanished = _seen_through([remembered.cells for remembered in self._kept], image, self.parameters.same_height)
-        kept: list[_Remembered] = []
-        for remembered, gone in zip(reversed(self._kept), reversed(vanished), strict=True):
-            comparison = grid.compare(remembered.cells, self.parameters.same_height)
-            reason = self._reason_to_forget(now - remembered.region.time, comparison, is_key, gone)
-            if not reason and len(kept) + len(newest) >= self.parameters.regions_max:
+        vanished = _seen_through([remembered.cells for remembered in old], self._image, parameters.same_height)
+        kept: list[Remembered] = []
+        forgotten: list[Forgotten] = []
+        for remembered, gone in zip(reversed(old), reversed(vanished), strict=True):
+            comparison = grid.compare(remembered.cells, parameters.same_height)
+            reason = self._reason_to_forget(remembered.region, comparison, gone)
+            if not reason and len(kept) + len(newest) >= parameters.regions_max:
                 reason = TOO_MANY
             if reason:
-                reasons[reason] += 1
+                forgotten.append(Forgotten(remembered.region, reason))
             else:
                 kept.append(remembered)
                 grid.paint(remembered.cells)
-        return tuple(reversed(kept))
+        return tuple(reversed(kept)), tuple(forgotten)
 
-    def _reason_to_forget(self, age: float, cells: Comparison, is_key: bool, gone: bool) -> str:
-        parameters = self.parameters
-        if age > parameters.age_max:
+    def _reason_to_forget(self, region: PlanarRegion, cells: Comparison, gone: bool) -> str:
+        parameters = self._parameters
+        if self._regions.time - region.time > parameters.age_max:
             return EXPIRED
         if cells.inside == 0:
             return FAR
@@ -104,45 +216,45 @@ class RegionMemory:
         if gone:
             return VANISHED
         # A frame that will not be kept replaces nothing: the next one may see less.
-        if is_key and cells.covered >= parameters.covered_share * cells.inside:
+        if self._is_key and cells.covered >= parameters.covered_share * cells.inside:
             return COVERED
         return ""
 
-    def _is_key(self, T_world_camera: Pose) -> bool:
-        if self._T_world_key is None:
+    def _moved_on(self, T_world_camera: Pose) -> bool:
+        """Whether the camera has moved since the last frame that was kept."""
+        if self._memory.T_world_key is None:
             return True
-        T_key_camera = self._T_world_key.inverse @ T_world_camera
+        T_key_camera = self._memory.T_world_key.inverse @ T_world_camera
         angle = np.arccos(np.clip(0.5 * (np.trace(T_key_camera.R) - 1.0), -1.0, 1.0))
-        moved = np.linalg.norm(T_key_camera.p) >= self.parameters.key_distance
-        return bool(moved or angle >= self.parameters.key_angle)
+        moved = np.linalg.norm(T_key_camera.p) >= self._parameters.key_distance
+        return bool(moved or angle >= self._parameters.key_angle)
 
     def _stands_on(self, T_world_sole: Pose, known: tuple[PlanarRegion, ...]) -> bool:
         """Whether known ground is under the middle, toe, heel and sides of a sole."""
-        p = self.parameters
-        probes = (
-            0.4 * np.array([(0, 0, 0), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)]) * (p.sole_length, p.sole_width, 0)
-        )
-        points = T_world_sole @ probes
+        probes = np.array([(0, 0, 0), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)])
+        points = T_world_sole @ (0.4 * probes * (*self._sole, 0.0))
         found = np.zeros(len(points), dtype=bool)
         for region in known:
             points_region = region.T_world_region.inverse @ points
-            near = np.abs(points_region[:, 2]) <= p.same_height
+            near = np.abs(points_region[:, 2]) <= self._parameters.same_height
             if near.any():
                 found |= near & contains_points(region.hull_region, np.ascontiguousarray(points_region[:, :2]))
         return bool(found.all())
 
-    def _support(self, side: Side, stance: Stance, time: float) -> PlanarRegion:
+    def _support(self, side: Side, time: float) -> PlanarRegion:
         """Ground assumed under a sole, and around it while the foot stands where it stood at the start."""
-        p = self.parameters
-        if self._start is None:
-            self._start = stance
-        moved = np.linalg.norm(stance.sole(side).p - self._start.sole(side).p) > p.same_height
-        half = 0.5 * (1.0 if moved else p.start_support) * np.array((p.sole_length, p.sole_width))
+        parameters, T_world_sole = self._parameters, self._stance.sole(side)
+        moved = np.linalg.norm(T_world_sole.p - self._start.sole(side).p) > parameters.same_height
+        half = 0.5 * (1.0 if moved else parameters.start_support) * np.array(self._sole)
         pad = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * half
-        return PlanarRegion(stance.sole(side), pad, (pad,), float(4.0 * half[0] * half[1]), time)
+        return PlanarRegion(T_world_sole, pad, (pad,), float(4.0 * half[0] * half[1]), time)
+
+    @property
+    def _sole(self) -> tuple[float, float]:
+        return self._all_parameters.sole_length, self._all_parameters.sole_width
 
 
-class _Remembered(NamedTuple):
+class Remembered(NamedTuple):
     """A region and its cells, which are found once."""
 
     region: PlanarRegion

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 from skills.footsteps.footstep import Footstep, Side, Stance
@@ -33,6 +33,16 @@ class RobotState:
     def __post_init__(self) -> None:
         for name in ("joint_positions", "joint_velocities", "com_world", "dcm_world"):
             object.__setattr__(self, name, readonly(getattr(self, name), (None,)))
+
+    def moved(self, T: Pose) -> RobotState:
+        """The same state seen from another frame."""
+        return replace(
+            self,
+            T_world_pelvis=T @ self.T_world_pelvis,
+            stance=self.stance.moved(T),
+            com_world=T @ self.com_world,
+            dcm_world=T @ self.dcm_world,
+        )
 
 
 class WalkingPhase(Enum):
@@ -71,6 +81,15 @@ class WalkingStatus:
     failure: str = ""
     last_sequence_id: int = -1
 
+    def moved(self, T: Pose) -> WalkingStatus:
+        """The same status seen from another frame."""
+        return replace(
+            self,
+            current_step=None if self.current_step is None else self.current_step.moved(T),
+            queue=tuple(step.moved(T) for step in self.queue),
+            imminent_stance=self.imminent_stance.moved(T),
+        )
+
 
 class StepEventKind(Enum):
     """What happened to a step."""
@@ -95,6 +114,10 @@ class StepEvent:
     step: Footstep
     T_world_sole: Pose
 
+    def moved(self, T: Pose) -> StepEvent:
+        """The same event seen from another frame."""
+        return replace(self, step=self.step.moved(T), T_world_sole=T @ self.T_world_sole)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ControlSample:
@@ -114,3 +137,8 @@ class ControlSample:
     dcm_reference_world: Array
     cop_world: Array
     dcm_error: float
+
+    def moved(self, T: Pose) -> ControlSample:
+        """The same sample seen from another frame."""
+        names = ("com_world", "dcm_world", "dcm_reference_world", "cop_world")
+        return replace(self, **{name: T @ getattr(self, name) for name in names})

@@ -16,9 +16,10 @@ import behaviors
 from behaviors import Outcome, Registry, Tree, draw, load_tree
 from behaviors.blackboard import type_name
 from behaviors.leaf import declared_inputs, declared_outputs
+from skills.footsteps import FootstepParameters
 from skills.geometry.pose import Pose
 from skills.height_map import HeightMapParameters
-from skills.regions import MemoryParameters
+from skills.regions import MemoryParameters, RegistrationParameters
 from skills.walking import StepEvent, StepEventKind
 from strict_yaml import YamlError, parse_document
 
@@ -62,7 +63,12 @@ def folder(tmp_path: Path) -> Path:
 
 def test_the_tree_with_the_new_leaf_ends_after_so_many_steps(registry, folder):
     robot = ScriptedRobot()
-    parameters = {"region_memory": MemoryParameters(), "height_map": HeightMapParameters()}
+    parameters = {
+        "region_memory": MemoryParameters(),
+        "registration": RegistrationParameters(),
+        "height_map": HeightMapParameters(),
+        "footsteps": FootstepParameters(),
+    }
     tree = Tree(load_tree(folder / "a_few_steps.yaml", registry), robot, parameters=parameters)
     for made in range(6):
         assert tree.outcome is Outcome.RUNNING

@@ -21,7 +21,7 @@ from skills.footsteps import (
 )
 from skills.geometry import DepthImage, LidarScan, PinholeCamera, Pose, SpinningLidar
 from skills.height_map import HeightMapParameters
-from skills.regions import MemoryParameters, PlanarRegion, PlanarRegions, RegionParameters
+from skills.regions import MemoryParameters, PlanarRegion, PlanarRegions, RegionParameters, RegistrationParameters
 from skills.walking import RobotState, StepEvent, WalkingPhase, WalkingStatus
 
 PERIOD = 0.02
@@ -30,6 +30,7 @@ PARAMETERS: Mapping[str, Any] = {
     "regions": RegionParameters(),
     "region_memory": MemoryParameters(),
     "height_map": HeightMapParameters(),
+    "registration": RegistrationParameters(),
     "sub_goal": SubGoalParameters(),
     "footsteps": FootstepParameters(),
     "terrain": TerrainParameters(),

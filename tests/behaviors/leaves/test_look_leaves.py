@@ -81,9 +81,11 @@ def test_the_map_holds_what_was_seen_and_is_as_new_as_the_image(tree, looked_at)
 
 def test_the_map_is_made_around_the_imminent_stance(tree, looked_at, monkeypatch):
     stances = []
-    update = look.RegionMemory.update
+    remember = look.remember
     monkeypatch.setattr(
-        look.RegionMemory, "update", lambda self, *given: stances.append(given[1]) or update(self, *given)
+        look,
+        "remember",
+        lambda memory, regions, stance, *rest: stances.append(stance) or remember(memory, regions, stance, *rest),
     )
     robot = tree.context.robot.robot
     robot.stand(x=2.0)

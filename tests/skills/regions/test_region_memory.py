@@ -6,9 +6,38 @@ from skills.footsteps.footstep import Stance
 from skills.geometry.camera import DepthImage
 from skills.geometry.polygon import contains_points
 from skills.geometry.pose import Pose
-from skills.regions import MemoryParameters, PlanarRegion, PlanarRegions, RegionMemory, extract_regions
+from skills.regions import (
+    MapParameters,
+    MemoryParameters,
+    PlanarRegion,
+    PlanarRegions,
+    RegionMemory,
+    RegistrationParameters,
+    extract_regions,
+    remember,
+)
 
 CAMERA = L515.scaled(0.3125)
+SOLE_LENGTH, SOLE_WIDTH = 0.26, 0.138
+
+
+class Map:
+    """A map whose frames are taken as they come: nothing drifts."""
+
+    def __init__(self, memory: MemoryParameters | None = None) -> None:
+        still = RegistrationParameters(overlap_min=1.0)
+        self._parameters = MapParameters(memory or MemoryParameters(), still, SOLE_LENGTH, SOLE_WIDTH)
+        self._memory = RegionMemory()
+
+    def update(self, regions: PlanarRegions, stance: Stance, image: DepthImage) -> PlanarRegions:
+        self._memory = remember(self._memory, regions, stance, image, self._parameters)
+        assert self._memory.ground is not None
+        return self._memory.ground
+
+    @property
+    def dropped(self) -> tuple[tuple[str, int], ...]:
+        assert self._memory.update is not None
+        return self._memory.update.reasons
 
 
 def pad(x: float, y: float, z: float, size=0.4, time=0.0, pitch=0.0) -> PlanarRegion:
@@ -43,7 +72,7 @@ def newest_height(regions: PlanarRegions, x: float, y: float) -> float:
 
 
 def test_ground_that_was_seen_ahead_is_known_when_the_feet_reach_it():
-    memory = RegionMemory()
+    memory = Map()
     floor = [block(2.0, 0.0, 0.0, size=(8.0, 2.0, 0.1))]
     seen = known = frame(0.0)
     for k in range(12):
@@ -57,7 +86,7 @@ def test_ground_that_was_seen_ahead_is_known_when_the_feet_reach_it():
 
 
 def test_the_newest_frame_comes_last():
-    memory = RegionMemory()
+    memory = Map()
     memory.update(frame(0.0, pad(0.8, 0.0, 0.0)), stance(0.0), blind(0.0))
     new = pad(1.0, 0.0, 0.005, time=0.5)
     known = memory.update(frame(0.5, new), stance(0.0), blind(0.3))
@@ -66,33 +95,33 @@ def test_the_newest_frame_comes_last():
 
 
 def test_old_regions_expire_with_a_reason():
-    memory = RegionMemory()
+    memory = Map()
     memory.update(frame(0.0, pad(0.5, 0.0, 0.0)), stance(0.0), blind(0.0))
     kept = memory.update(frame(7.9), stance(0.0), blind(0.5))
     assert np.isfinite(newest_height(kept, 0.5, 0.0)) and memory.dropped == ()
     gone = memory.update(frame(8.1), stance(0.0), blind(0.5))
-    assert np.isnan(newest_height(gone, 0.5, 0.0)) and memory.dropped == (("expired", 1),)
+    assert np.isnan(newest_height(gone, 0.5, 0.0)) and memory.dropped == (("too old", 1),)
 
 
 def test_regions_far_from_the_feet_are_dropped():
-    memory = RegionMemory()
+    memory = Map()
     memory.update(frame(0.0, pad(0.5, 0.0, 0.0)), stance(0.0), blind(0.0))
     memory.update(frame(1.0), stance(3.0), blind(3.0))
-    assert memory.dropped == (("far", 1),)
+    assert memory.dropped == (("too far", 1),)
 
 
 def test_ground_seen_differently_replaces_the_old():
-    memory = RegionMemory()
+    memory = Map()
     memory.update(frame(0.0, pad(0.5, 0.0, 0.0)), stance(0.0), blind(0.0))
     known = memory.update(frame(1.0, pad(0.6, 0.0, -0.05, time=1.0)), stance(0.0), blind(0.0))
-    assert memory.dropped == (("changed", 1),)
+    assert memory.dropped == (("seen differently", 1),)
     assert newest_height(known, 0.5, 0.0) == pytest.approx(-0.05)
     # What is left there is the ground assumed around the feet, not the old region.
     assert all(region.time == 1.0 for region in known.regions)
 
 
 def test_a_block_that_the_camera_now_sees_through_is_forgotten():
-    memory = RegionMemory()
+    memory = Map()
     pillar = block(0.8, 0.0, 0.2, size=(0.3, 0.3, 0.2))
     floor = block(0.8, 0.0, 0.0, size=(3.0, 2.0, 0.1))
     image = look([floor, pillar], camera_pose(0.0), CAMERA).image
@@ -101,12 +130,12 @@ def test_a_block_that_the_camera_now_sees_through_is_forgotten():
     # The floor where the block stood returns no depth, but the floor behind it does.
     image = look([floor], camera_pose(0.0), CAMERA, time=1.0).image
     known = memory.update(PlanarRegions((), 1.0, 1), stance(0.0), image)
-    assert dict(memory.dropped)["vanished"] == 1
+    assert dict(memory.dropped)["seen through"] == 1
     assert newest_height(known, 0.8, 0.0) == pytest.approx(0.0, abs=0.01)
 
 
 def test_ground_that_is_only_hidden_is_remembered():
-    memory = RegionMemory()
+    memory = Map()
     floor, wall = block(0.8, 0.0, 0.0, size=(3.0, 2.0, 0.1)), block(0.5, 0.0, 0.6, size=(0.1, 2.0, 0.7))
     image = look([floor], camera_pose(0.0), CAMERA).image
     memory.update(extract_regions(image), stance(0.0), image)
@@ -116,13 +145,13 @@ def test_ground_that_is_only_hidden_is_remembered():
 
 
 def test_memory_stays_bounded():
-    memory, floor = RegionMemory(), block(5.0, 0.0, 0.0, size=(16.0, 2.0, 0.1))
+    memory, floor = Map(), block(5.0, 0.0, 0.0, size=(16.0, 2.0, 0.1))
     for k in range(60):
         x = 0.1 * k
         image = look([floor], camera_pose(x), CAMERA, time=0.1 * k, frame_id=k).image
         known = memory.update(extract_regions(image), stance(x), image)
         assert len(known.regions) <= 25
-    few = RegionMemory(MemoryParameters(regions_max=3))
+    few = Map(MemoryParameters(regions_max=3))
     for k in range(10):
         known = few.update(frame(0.1 * k, pad(0.2 * k, 0.8, 0.0, 0.15, 0.1 * k)), stance(0.2 * k, 5.0), blind(0.2 * k))
         assert len(known.regions) <= 3 + 2
@@ -130,7 +159,7 @@ def test_memory_stays_bounded():
 
 
 def test_frames_without_motion_replace_each_other():
-    memory, known = RegionMemory(), frame(0.0)
+    memory, known = Map(), frame(0.0)
     for k in range(20):
         known = memory.update(frame(0.1 * k, pad(0.8, 0.0, 0.0, time=0.1 * k)), stance(0.0), blind(0.0))
     assert len(known.regions) <= 2 + 2
@@ -138,28 +167,21 @@ def test_frames_without_motion_replace_each_other():
 
 def test_unseen_feet_stand_on_assumed_ground_that_goes_on_around_them_at_the_start():
     feet = Stance(Pose.from_xyz_rpy((0.0, 0.12, 0.3), (0.0, 0.2, 0.5)), Pose.from_xyz_rpy((0.0, -0.12, 0.25)))
-    memory, parameters = RegionMemory(), MemoryParameters()
+    memory, parameters = Map(), MemoryParameters()
     left, right = memory.update(frame(0.0), feet, blind(0.0)).regions
     np.testing.assert_array_equal(left.T_world_region.p, feet.T_world_left.p)
     np.testing.assert_array_equal(left.normal_world, feet.T_world_left.R[:, 2])
-    assert np.ptp(right.hull_region[:, 0]) == pytest.approx(parameters.start_support * parameters.sole_length)
+    assert np.ptp(right.hull_region[:, 0]) == pytest.approx(parameters.start_support * SOLE_LENGTH)
 
     moved = Stance(feet.T_world_left, Pose.from_xyz_rpy((0.4, -0.12, 0.25)))
     left, right = memory.update(frame(1.0), moved, blind(0.0)).regions
-    assert np.ptp(left.hull_region[:, 0]) == pytest.approx(parameters.start_support * parameters.sole_length)
-    assert np.ptp(right.hull_region[:, 0]) == pytest.approx(parameters.sole_length)
-    assert np.ptp(right.hull_region[:, 1]) == pytest.approx(parameters.sole_width)
+    assert np.ptp(left.hull_region[:, 0]) == pytest.approx(parameters.start_support * SOLE_LENGTH)
+    assert np.ptp(right.hull_region[:, 0]) == pytest.approx(SOLE_LENGTH)
+    assert np.ptp(right.hull_region[:, 1]) == pytest.approx(SOLE_WIDTH)
 
 
 def test_seen_feet_need_no_assumed_ground():
     seen = pad(0.0, 0.0, 0.0, size=1.0)
-    assert RegionMemory().update(frame(0.0, seen), stance(0.0), blind(0.0)).regions == (seen,)
-    below = RegionMemory().update(frame(0.0, seen), stance(0.0, z=0.3), blind(0.0))
+    assert Map().update(frame(0.0, seen), stance(0.0), blind(0.0)).regions == (seen,)
+    below = Map().update(frame(0.0, seen), stance(0.0, z=0.3), blind(0.0))
     assert len(below.regions) == 3 and below.regions[-1] is seen
-
-
-def test_reset_forgets_everything():
-    memory = RegionMemory()
-    memory.update(frame(0.0, pad(0.5, 0.0, 0.0)), stance(0.0), blind(0.0))
-    memory.reset()
-    assert np.isnan(newest_height(memory.update(frame(0.1), stance(0.0), blind(0.0)), 0.5, 0.0))

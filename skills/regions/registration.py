@@ -1,0 +1,216 @@
+"""Registration: how far the robot's estimate has drifted since the ground was mapped, seen by the ground itself.
+
+The regions of the newest frame and those of earlier ones are painted into rasters of heights; the shift in x, y, z and
+the turn about the vertical that bring the new ground onto the old are found by Gauss-Newton on blurred heights, coarse
+to fine (Lucas and Kanade, 1981), with weights that fall off for what does not fit (Geman and McClure), so that a block
+that was moved does not pull. Roll and pitch are left alone: gravity is known. What the ground does not show, such as a
+shift along a floor without features, is up to a prior: the drift goes on as it did. The prior yields to a jump.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from skills.geometry.camera import DepthImage
+from skills.geometry.pose import IDENTITY, Array, Pose, readonly, rotation_z
+from skills.kernels import kernel
+from skills.regions.height_reference import T_RASTER_WORLD, HeightReference
+from skills.regions.planar_region import PlanarRegions
+from skills.regions.region_raster import Raster, Window, paint_regions
+from skills.regions.registration_parameters import RegistrationParameters
+
+# Of each level: width of the blur [m], residual at which the weight is a quarter [m], iterations.
+_LEVELS = ((0.08, 0.10, 6), (0.04, 0.04, 6), (0.02, 0.02, 6))
+_CONVERGED = 1e-4  # [m] and [rad]
+# A blurred cell is used where this share of its surroundings is known, about as much in both rasters.
+_KNOWN_MIN, _KNOWN_CHANGE = 0.4, 0.15
+_CELLS_MIN = 100
+_PRIOR_MIN = 1e-4
+_SHORTEST = 1e-3  # [s]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Drift:
+    """How a frame lies to the ground known before.
+
+    Attributes:
+        T_world_frame: what brings the frame's ground onto the ground known before.
+        shift_turn: the same as a shift of the ground in view and a turn about its middle, (4,) [m, m, m, rad].
+        rate: steady part of it, (4,) [m/s, rad/s].
+        time: robot time of the frame [s].
+        overlap: share of the frame's ground that could be compared.
+        reason: why the frame could not say where it is; empty where it could.
+    """
+
+    T_world_frame: Pose
+    shift_turn: Array
+    rate: Array
+    time: float
+    overlap: float = 0.0
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        for name in ("shift_turn", "rate"):
+            object.__setattr__(self, name, readonly(getattr(self, name), (4,)))
+
+
+def register(
+    regions: PlanarRegions,
+    image: DepthImage,
+    reference: HeightReference | None,
+    before: Drift | None,
+    parameters: RegistrationParameters,
+) -> Drift:
+    """Find how far the estimate has drifted between the reference and a frame.
+
+    Args:
+        regions: of the frame.
+        image: the frame; it tells where the camera was believed to be.
+        reference: the ground known before; None where there is none.
+        before: the drift of the frame before.
+        parameters: how far to trust the frame.
+    """
+    if reference is None or before is None:
+        return Drift(IDENTITY, np.zeros(4), np.zeros(4), image.time, reason="no ground is known yet")
+    dt = image.time - before.time
+    predicted = before.rate * dt
+    window = _window_of(regions, image, parameters)
+    newest = paint_regions(regions.regions, T_RASTER_WORLD, window)
+    found, overlap, reason = _fit(newest, reference.cut(window), window, predicted, parameters)
+    if reason:
+        rate = before.rate * np.exp(-dt / parameters.rate_memory)
+        return Drift(_as_pose(predicted, window), predicted, rate, image.time, overlap, reason)
+    surprise = found - predicted
+    rate = before.rate + parameters.rate_gain * _trust(surprise, parameters) * surprise / max(dt, _SHORTEST)
+    return Drift(_as_pose(found, window), found, rate, image.time, overlap)
+
+
+def _window_of(regions: PlanarRegions, image: DepthImage, parameters: RegistrationParameters) -> Window:
+    """The part of the raster that a frame shows, within reach of its camera, with a margin for the blur."""
+    camera = (T_RASTER_WORLD @ image.T_world_camera.p)[:2]
+    points = [(T_RASTER_WORLD @ region.hull_world)[:, :2] for region in regions.regions]
+    seen = np.concatenate((*points, camera[None]))
+    margin = _LEVELS[0][0]
+    low = np.maximum(seen.min(axis=0), camera - parameters.reach) - margin
+    high = np.minimum(seen.max(axis=0), camera + parameters.reach) + margin
+    return Window.between(low, high, parameters.cell)
+
+
+def _fit(
+    newest: tuple[Raster, Raster],
+    known: tuple[Raster, Raster],
+    window: Window,
+    predicted: Array,
+    parameters: RegistrationParameters,
+) -> tuple[Array, float, str]:
+    """Shift and turn that bring the newest heights onto the known ones, the share compared, and why they do not."""
+    shift_turn, A, b = predicted, np.empty((4, 4)), np.empty(4)
+    prior = parameters.prior * np.array((1.0, 1.0, 1.0, parameters.prior_turn))
+    overlap = 0.0
+    for width, scale, iterations in _LEVELS:
+        rasters = (*_blurred(newest, width / window.cell), *_blurred(known, width / window.cell))
+        for _ in range(iterations):
+            compared, painted, weight, _ = _sum_up(*rasters, window.cell, shift_turn, scale, A, b)
+            overlap = compared / max(painted, 1.0)
+            if compared < _CELLS_MIN or overlap <= parameters.overlap_min:
+                return predicted, overlap, "too little of the ground in view was known before"
+            surprise = shift_turn - predicted
+            stiff = weight * (prior * _trust(surprise, parameters) + _PRIOR_MIN)
+            change = -np.linalg.solve(A + np.diag(stiff), b + stiff * surprise)
+            shift_turn = shift_turn + change
+            if np.abs(change).max() < _CONVERGED:
+                break
+    if np.linalg.norm(shift_turn[:3]) > parameters.shift_max or abs(shift_turn[3]) > parameters.turn_max:
+        return predicted, overlap, "the ground in view seems to have moved further than an estimate drifts"
+    return shift_turn, overlap, ""
+
+
+def _trust(surprise: Array, parameters: RegistrationParameters) -> Array:
+    """How much each of shift and turn is like drift, (4,): 1 where nothing surprises, less and less for a jump."""
+    expected = np.array((*3 * (parameters.prior_shift,), parameters.prior_yaw))
+    return 1.0 / (1.0 + (surprise / expected) ** 2) ** 2
+
+
+def _blurred(raster: tuple[Raster, Raster], width: float) -> tuple[Raster, Raster]:
+    """Mean of the known heights around each cell, and how much of its surroundings is known; width in cells."""
+    heights, mask = raster
+    known = cv2.GaussianBlur(mask, (0, 0), width)
+    return cv2.GaussianBlur(heights * mask, (0, 0), width) / np.maximum(known, np.float32(1e-6)), known
+
+
+def _as_pose(shift_turn: Array, window: Window) -> Pose:
+    """T_world_frame of a shift and a turn about the middle of the window."""
+    if not shift_turn.any():
+        return IDENTITY
+    R, middle = rotation_z(shift_turn[3]), window.middle
+    T_raster = Pose(R, middle - R @ middle + shift_turn[:3])
+    return T_RASTER_WORLD.inverse @ T_raster @ T_RASTER_WORLD
+
+
+@kernel
+def _sum_up(
+    newest: Raster,
+    newest_known: Raster,
+    reference: Raster,
+    reference_known: Raster,
+    cell: float,
+    shift_turn: Array,
+    scale: float,
+    A: Array,
+    b: Array,
+) -> tuple[float, float, float, float]:
+    """Normal equations A change = -b of the residuals; cells compared, cells of the frame, sum of weights, cost."""
+    ny, nx = newest.shape
+    A[:, :] = 0.0
+    b[:] = 0.0
+    J = np.empty(4)
+    compared, painted, weights, cost = 0.0, 0.0, 0.0, 0.0
+    cos, sin = np.cos(shift_turn[3]), np.sin(shift_turn[3])
+    middle_x, middle_y = 0.5 * nx * cell, 0.5 * ny * cell
+    for row in range(1, ny - 1):
+        for column in range(1, nx - 1):
+            known = newest_known[row, column]
+            if known < _KNOWN_MIN:
+                continue
+            painted += 1.0
+            x, y = (column + 0.5) * cell - middle_x, (row + 0.5) * cell - middle_y
+            turned_x, turned_y = cos * x - sin * y, sin * x + cos * y
+            u = (turned_x + shift_turn[0] + middle_x) / cell - 0.5
+            v = (turned_y + shift_turn[1] + middle_y) / cell - 0.5
+            i, j = int(np.floor(v)), int(np.floor(u))
+            if i < 0 or j < 0 or i >= ny - 1 or j >= nx - 1:
+                continue
+            beside = min(newest_known[row, column - 1], newest_known[row, column + 1])
+            beside = min(beside, newest_known[row - 1, column], newest_known[row + 1, column])
+            k00, k01 = reference_known[i, j], reference_known[i, j + 1]
+            k10, k11 = reference_known[i + 1, j], reference_known[i + 1, j + 1]
+            if min(beside, k00, k01, k10, k11) < _KNOWN_MIN:
+                continue
+            f, g = u - j, v - i
+            there = (k00 * (1 - f) + k01 * f) * (1 - g) + (k10 * (1 - f) + k11 * f) * g
+            # Where one raster knows more than the other, as at the edge of a shadow, blurred heights differ by that.
+            if abs(there - known) > _KNOWN_CHANGE:
+                continue
+            h00, h01 = reference[i, j], reference[i, j + 1]
+            h10, h11 = reference[i + 1, j], reference[i + 1, j + 1]
+            height = (h00 * (1 - f) + h01 * f) * (1 - g) + (h10 * (1 - f) + h11 * f) * g
+            own_x = (newest[row, column + 1] - newest[row, column - 1]) / (2 * cell)
+            own_y = (newest[row + 1, column] - newest[row - 1, column]) / (2 * cell)
+            # The mean of both rasters' slopes converges faster than either.
+            slope_x = 0.5 * (((h01 - h00) * (1 - g) + (h11 - h10) * g) / cell + cos * own_x - sin * own_y)
+            slope_y = 0.5 * (((h10 - h00) * (1 - f) + (h11 - h01) * f) / cell + sin * own_x + cos * own_y)
+            residual = newest[row, column] + shift_turn[2] - height
+            square = (residual / scale) ** 2
+            weight = 1.0 / (1.0 + square) ** 2
+            J[0], J[1], J[2], J[3] = -slope_x, -slope_y, 1.0, slope_x * turned_y - slope_y * turned_x
+            for k in range(4):
+                b[k] += weight * J[k] * residual
+                for m in range(4):
+                    A[k, m] += weight * J[k] * J[m]
+            compared += 1.0
+            weights += weight
+            cost += square / (1.0 + square)
+    return compared, painted, weights, cost
