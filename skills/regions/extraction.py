@@ -76,6 +76,8 @@ class RegionExtraction:
 
 
 DEFAULT_PARAMETERS = RegionParameters()
+NO_NOISE = NoiseLevel()
+_BEND_OF_NOISE = 1.5  # times the error that the pixels of a patch share: so far it bends what is flat
 
 
 def extract_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PARAMETERS) -> PlanarRegions:
@@ -93,7 +95,9 @@ def examine_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PA
     patches = fit_patches(image, parameters)
     coarse = grow_regions(patches, parameters)
     fine = refine_regions(image, patches, coarse, parameters)
-    regions, region_labels, rejected = polygons_of(image, fine.labels, fine.planes, fine.sigma, fine.bend, parameters)
+    regions, region_labels, rejected = polygons_of(
+        image, fine.labels, fine.planes, fine.sigma, fine.bend, parameters, fine.noise
+    )
     found = PlanarRegions(regions, image.time, image.frame_id)
     return RegionExtraction(image, found, fine.labels, region_labels, rejected, parameters, fine.noise)
 
@@ -105,6 +109,7 @@ def polygons_of(
     sigma: Array,
     bend: Array,
     parameters: RegionParameters,
+    noise: NoiseLevel = NO_NOISE,
 ) -> tuple[tuple[PlanarRegion, ...], tuple[int, ...], tuple[RejectedRegion, ...]]:
     """Turn labelled pixels into polygons in the world and sort out what is no ground.
 
@@ -115,6 +120,7 @@ def polygons_of(
         sigma: spread of each piece's points about its plane, (R,) [m].
         bend: how much each piece is bent, (R,) [m]; infinite where that is not known.
         parameters: tolerances and limits.
+        noise: of the image; what it moves patches by is no bend.
 
     Returns:
         The regions, the label behind each of them, and the pieces that became no region.
@@ -134,7 +140,7 @@ def polygons_of(
         if pixels[loop] < 0:
             continue
         objection = _objection(
-            areas[loop], steepness[label], depths[loop], pixels[loop] / patch_pixels, bends[label], parameters
+            areas[loop], steepness[label], depths[loop], pixels[loop] / patch_pixels, bends[label], parameters, noise
         )
         if not objection:
             rings = [loop, *_holes_in(loop, outlines, areas, parameters.hole_area_min)]
@@ -200,7 +206,13 @@ def _holes_in(loop: int, outlines: Outlines, areas: list[float], area_min: float
 
 
 def _objection(
-    area: float, steepness: float, depth: float, patches: float, bend: float, parameters: RegionParameters
+    area: float,
+    steepness: float,
+    depth: float,
+    patches: float,
+    bend: float,
+    parameters: RegionParameters,
+    noise: NoiseLevel,
 ) -> tuple[str, str] | None:
     """Cause and reason why an outline is no region, if there is one."""
     slope = math.acos(min(max(steepness, -1.0), 1.0))
@@ -216,6 +228,7 @@ def _objection(
         return "few pixels", f"{patches:.0f} patches, limit {parameters.patches_min}"
     if math.isinf(bend):
         return "thin", "too thin to fit a plane"
-    if bend > parameters.bend_max:
-        return "bent", f"bent by {1e3 * bend:.1f} mm, limit {1e3 * parameters.bend_max:g} mm"
+    bend_max = math.hypot(parameters.bend_max, _BEND_OF_NOISE * noise.shared(depth))
+    if bend > bend_max:
+        return "bent", f"bent by {1e3 * bend:.1f} mm, limit {1e3 * bend_max:.1f} mm"
     return None

@@ -43,6 +43,14 @@ class NoiseLevel:
         """The four numbers as kernels take them."""
         return np.array((self.white, self.white_growth, self.correlated, self.correlated_growth))
 
+    def own(self, depth: float) -> float:
+        """Standard deviation of a pixel's own error at a depth [m]."""
+        return self.white + self.white_growth * depth**2
+
+    def shared(self, depth: float) -> float:
+        """Standard deviation of the error that the pixels of a patch share at a depth [m]."""
+        return self.correlated + self.correlated_growth * depth**2
+
 
 def estimate_noise(sums: Array, pixels: float) -> NoiseLevel:
     """Noise of the image behind the sums of patches, (rows, columns, 10), whose full patches have so many pixels."""

@@ -49,7 +49,11 @@ class RegionParameters:
     )
     patches_min: int = parameter(12, unit="1", minimum=1, maximum=10000, meaning="fewer patches are no region")
     bend_max: float = parameter(
-        0.005, unit="m", minimum=0.0005, maximum=0.1, meaning="spread of patch means about a region; more is curved"
+        0.005,
+        unit="m",
+        minimum=0.0005,
+        maximum=0.1,
+        meaning="spread of patch means about a region beyond noise; more is curved",
     )
     area_min: float = parameter(0.01, unit="m^2", minimum=0.0, maximum=10.0, meaning="smaller regions are dropped")
     hole_area_min: float = parameter(0.002, unit="m^2", minimum=0.0, maximum=1.0, meaning="smaller holes are filled")

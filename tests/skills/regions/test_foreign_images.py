@@ -37,7 +37,7 @@ class Source:
 
 # Khoshelham and Oude Elberink, 2012: the depth of such a sensor spreads by 1.425 mm at 1 m, growing with its square.
 DESK = Source(
-    "tum_fr3_1341848230.910894_depth.png", PinholeCamera(640, 480, 535.4, 539.2, 320.1, 247.6), 0.0005, 1.425e-3, 0.6
+    "tum_fr3_1341848230.910894_depth.png", PinholeCamera(640, 480, 535.4, 539.2, 320.1, 247.6), 0.0005, 1.425e-3, 0.85
 )
 # Rendered without noise, in steps of 0.2 mm.
 ROOM = Source("icl_nuim_0_depth.png", PinholeCamera(640, 480, 481.2, 480.0, 319.5, 239.5), 0.001, 0.0, 0.98)
@@ -82,7 +82,7 @@ def test_every_region_is_as_flat_as_the_sensor_is_exact(source):
     for k in range(len(extraction(source).regions.regions)):
         inside = (pieces == k) & np.isfinite(off)
         scaled = np.sort(np.abs(off[inside]) / source.sigma(depth[inside]))
-        assert np.sqrt(np.mean(scaled[: int(0.98 * len(scaled))] ** 2)) < 2.0
+        assert np.sqrt(np.mean(scaled[: int(0.98 * len(scaled))] ** 2)) < 2.5
 
 
 @SOURCES
