@@ -46,9 +46,10 @@ def cast_ranges(
         -np.einsum("gji,gj->gi", R_lidar_geom, p_lidar),
         np.stack((np.cos(azimuths), np.sin(azimuths))),
         np.stack((np.cos(elevations), np.sin(elevations))),
+        lidar.near,
+        lidar.far,
         ranges,
     )
-    ranges[(ranges < lidar.near) | (ranges > lidar.far)] = 0.0
     return ranges
 
 
@@ -92,9 +93,11 @@ def _cast(
     o_geom: NDArray[Any],
     around: NDArray[Any],
     upward: NDArray[Any],
+    near: float,
+    far: float,
     ranges: NDArray[Any],
 ) -> None:
-    """Shorten the ranges to the nearest hit of each ray; o_geom is the lidar in the frame of each geom."""
+    """Shorten infinite ranges to the nearest hit of each ray; o_geom is the lidar in the frame of each geom."""
     most = 0
     for g in range(kinds.shape[0]):
         most = max(most, (windows[g, 1] - windows[g, 0]) * windows[g, 3])
@@ -115,6 +118,10 @@ def _cast(
         elif kinds[g] == PLANE:
             _meet_plane(o_geom[g], sizes[g], d, n, t)
         _keep_nearest(windows[g], t, ranges)
+    for r in range(ranges.shape[0]):
+        for c in range(ranges.shape[1]):
+            if not near <= ranges[r, c] <= far:
+                ranges[r, c] = 0.0
 
 
 @kernel

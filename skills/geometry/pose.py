@@ -21,8 +21,11 @@ def readonly(values: ArrayLike, shape: tuple[int | None, ...] | None = None) -> 
         ValueError: where the shape does not fit.
     """
     array = np.array(values, dtype=np.float64)
-    if shape is not None and (
-        array.ndim != len(shape) or any(n is not None and n != m for n, m in zip(shape, array.shape, strict=True))
+    # Most shapes are simply equal, and this runs for every pose that is made.
+    if (
+        shape is not None
+        and array.shape != shape
+        and (array.ndim != len(shape) or any(n is not None and n != m for n, m in zip(shape, array.shape, strict=True)))
     ):
         raise ValueError(f"got an array of shape {array.shape}, needs {shape}")
     array.flags.writeable = False
