@@ -17,7 +17,7 @@ from skills.geometry.pose import Array
 from skills.kernels import kernel
 from skills.regions.noise_level import depth_noise
 from skills.regions.parameters import RegionParameters
-from skills.regions.patches import SUMS, Patches, cosine, fit_plane, misfit, off_plane
+from skills.regions.patches import SUMS, Patches, fit_plane, misfit, off_plane
 
 Labels = NDArray[np.int32]
 
@@ -39,19 +39,16 @@ class PatchRegions:
 
 def grow_regions(patches: Patches, parameters: RegionParameters) -> PatchRegions:
     """Join patches into regions."""
-    rows, columns = patches.sigma.shape
-    labels = np.full((rows, columns), -1, dtype=np.int32)
-    order = np.argsort(patches.sigma, axis=None, kind="stable")
-    order = order[: int(np.count_nonzero(np.isfinite(patches.sigma)))]
-    capacity = len(order) // parameters.patches_min + 1
-    sums, planes = np.zeros((capacity, SUMS)), np.zeros((capacity, 3))
     p, pixels = parameters, patches.size**2
-    off = np.zeros((rows, columns))
-    tilt = np.zeros((rows, columns))
-    _allow(patches.sums, patches.noise.law, pixels, patches.edge, p.noise_factor, off, tilt)
+    labels = np.full(patches.sigma.shape, -1, dtype=np.int32)
+    order = np.argsort(patches.sigma, axis=None, kind="stable")[: np.count_nonzero(np.isfinite(patches.sigma))]
+    capacity = len(order) // p.patches_min + 1
+    sums, planes = np.zeros((capacity, SUMS)), np.zeros((capacity, 3))
     limits = np.array((p.link_angle, p.link_offset, p.grow_angle, p.grow_offset))
-    count = _grow(patches.sums, patches.planes, order, limits, off, tilt, p.patches_min, labels, sums, planes)
-    _fill(patches.sums, planes, p.fill_offset, off, 0.5 * pixels, labels)
+    count = _grow(patches.sums, patches.facets, order, limits, p.patches_min, labels, sums, planes)
+    if count == 0:
+        return PatchRegions(labels, np.zeros((0, 3)), np.zeros(0))
+    _fill(patches.sums, patches.facets, planes, p.fill_offset, labels)
     parents = _merge(labels, count, p.merge_offset, p.noise_factor, patches.noise.law, pixels, sums, planes)
     roots, renumbered = np.unique(parents, return_inverse=True)
     lookup = np.append(renumbered, -1).astype(np.int32)
@@ -60,25 +57,11 @@ def grow_regions(patches: Patches, parameters: RegionParameters) -> PatchRegions
 
 
 @kernel
-def _allow(sums: Array, noise: Array, pixels: float, edge: float, factor: float, off: Array, tilt: Array) -> None:
-    """How far noise may move the mean of each patch [m] and turn its plane, fitted to 3 x 3 patches [rad]."""
-    for row in range(off.shape[0]):
-        for column in range(off.shape[1]):
-            s = sums[row, column]
-            if s[0] > 0.0:
-                depth = s[0] / s[3]
-                off[row, column] = factor * depth_noise(noise, depth, pixels)
-                tilt[row, column] = off[row, column] / (np.sqrt(6.0) * edge * depth)
-
-
-@kernel
 def _grow(
     patch_sums: Array,
-    patch_planes: Array,
+    facets: Array,
     order: NDArray[np.int64],
     limits: Array,
-    off: Array,
-    tilt: Array,
     patches_min: int,
     labels: Labels,
     sums: Array,
@@ -88,14 +71,18 @@ def _grow(
     rows, columns = labels.shape
     queue = np.empty(rows * columns, np.int64)
     seen = np.zeros((rows, columns), np.int32)  # the last seed, counted from 1, that reached a patch
+    link_angle, link_offset, grow_angle, grow_offset = limits
+    face = np.empty(4)
     count = 0
     for seed in range(order.shape[0]):
         row, column = order[seed] // columns, order[seed] % columns
         if labels[row, column] >= 0:
             continue
         region, plane = sums[count], planes[count]
+        for k in range(4):
+            face[k] = facets[row, column, k]
         for k in range(3):
-            plane[k] = patch_planes[row, column, k]
+            plane[k] = face[k] / face[3]
         for k in range(10):
             region[k] = 0.0
         head, tail, fitted = 0, 1, 6
@@ -108,24 +95,23 @@ def _grow(
                 region[k] += patch_sums[row, column, k]
             if head > 1.25 * fitted:
                 fit_plane(region, plane)
+                _set_face(plane, face)
                 fitted = head
-            here = patch_planes[row, column]
+            here = facets[row, column]
             for side in range(4):
                 i = row + (side == 0) - (side == 1)
                 j = column + (side == 2) - (side == 3)
                 if i < 0 or j < 0 or i >= rows or j >= columns or labels[i, j] >= 0 or seen[i, j] == seed + 1:
                     continue
-                there = patch_planes[i, j]
-                s = patch_sums[i, j]
+                there = facets[i, j]
+                allowed = link_offset + there[7]
                 # A patch without a plane is not a number, and every test of it fails.
-                link_cosine = 1.0 - 0.5 * (limits[0] + tilt[i, j]) ** 2
-                grow_cosine = 1.0 - 0.5 * (limits[2] + tilt[i, j]) ** 2
                 if (
-                    cosine(here, there) >= link_cosine
-                    and cosine(plane, there) >= grow_cosine
-                    and abs(off_plane(s, plane)) <= limits[3] + off[i, j]
-                    and abs(off_plane(s, here)) <= limits[1] + off[i, j]
-                    and abs(off_plane(patch_sums[row, column], there)) <= limits[1] + off[i, j]
+                    abs(_off(there, face)) <= grow_offset + there[7]
+                    and abs(_off(there, here)) <= allowed
+                    and abs(_off(here, there)) <= allowed
+                    and _turned(there, here) <= (link_angle + there[8]) ** 2
+                    and _turned(there, face) <= (grow_angle + there[8]) ** 2
                 ):
                     seen[i, j] = seed + 1
                     queue[tail] = i * columns + j
@@ -134,12 +120,13 @@ def _grow(
             continue
         # Early members were judged by a plane that was still poor: judge them again by the last one.
         fit_plane(region, plane)
+        _set_face(plane, face)
         kept = 0
         for k in range(10):
             region[k] = 0.0
         for k in range(tail):
             row, column = queue[k] // columns, queue[k] % columns
-            if abs(off_plane(patch_sums[row, column], plane)) <= limits[3] + off[row, column]:
+            if abs(_off(facets[row, column], face)) <= grow_offset + facets[row, column, 7]:
                 labels[row, column] = count
                 kept += 1
                 for m in range(10):
@@ -154,7 +141,27 @@ def _grow(
 
 
 @kernel
-def _fill(patch_sums: Array, planes: Array, offset: float, off: Array, filled_min: float, labels: Labels) -> None:
+def _set_face(plane: Array, face: Array) -> None:
+    """Unit normal and distance of a plane."""
+    face[3] = 1.0 / np.sqrt(plane[0] ** 2 + plane[1] ** 2 + plane[2] ** 2)
+    for k in range(3):
+        face[k] = plane[k] * face[3]
+
+
+@kernel
+def _off(facet: Array, face: Array) -> float:
+    """Distance of a patch's mean from a plane, positive behind it [m]."""
+    return face[0] * facet[4] + face[1] * facet[5] + face[2] * facet[6] - face[3]
+
+
+@kernel
+def _turned(facet: Array, face: Array) -> float:
+    """Square of the angle between two normals, for angles well below 1 rad."""
+    return 2.0 - 2.0 * (face[0] * facet[0] + face[1] * facet[1] + face[2] * facet[2])
+
+
+@kernel
+def _fill(patch_sums: Array, facets: Array, planes: Array, offset: float, labels: Labels) -> None:
     """Give patches without a region that of a neighbour whose plane they lie in, outwards from the regions."""
     rows, columns = labels.shape
     queue = np.empty(rows * columns, np.int64)
@@ -174,10 +181,8 @@ def _fill(patch_sums: Array, planes: Array, offset: float, off: Array, filled_mi
             j = column + (side == 2) - (side == 3)
             if i < 0 or j < 0 or i >= rows or j >= columns or labels[i, j] >= 0:
                 continue
-            if (
-                patch_sums[i, j, 0] >= filled_min
-                and abs(off_plane(patch_sums[i, j], planes[label])) <= offset + off[i, j]
-            ):
+            # What allows for noise is not a number where a patch has few pixels.
+            if abs(off_plane(patch_sums[i, j], planes[label])) <= offset + facets[i, j, 7]:
                 labels[i, j] = label
                 queue[tail] = i * columns + j
                 tail += 1

@@ -22,17 +22,26 @@ from skills.regions.parameters import RegionParameters
 
 SUMS = 10
 N, X, Y, W, XX, XY, YY, XW, YW, WW = range(SUMS)
+FACET = 9
+LANES = 64  # columns of pixels that are summed side by side; the largest patch is no wider
+_L1, _L2, _L3, _L4, _L5 = (np.uint64(k * LANES) for k in range(1, 6))
+_FILLED_MIN = 0.25  # patches with a smaller share of valid pixels get no plane
+_ROUND_MIN = 2.5e-4  # least determinant over squared trace of the spread of pixels that carry a plane
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Patches:
     """The patch grid of a depth image, in normalised image coordinates.
 
+    Patches at the right and the lower border may hold fewer pixels than others.
+
     Attributes:
         size: edge of a patch [px].
         edge: the same as a length at depth 1 [1].
         sums: sums over the valid pixels of each patch, (rows, columns, 10).
-        planes: plane of each patch, (rows, columns, 3) [1/m]; not a number where it has none.
+        facets: plane and mean point of each patch in the camera frame, (rows, columns, 9): unit normal away from the
+            camera, distance of the plane, mean point, how far noise may move the mean and turn the plane [1, m, m, m,
+            rad]; not a number where it has none.
         sigma: spread of the pixels about that plane, (rows, columns) [m]; infinite where it has none.
         noise: how noisy the image is.
     """
@@ -40,7 +49,7 @@ class Patches:
     size: int
     edge: float
     sums: Array
-    planes: Array
+    facets: Array
     sigma: Array
     noise: NoiseLevel
 
@@ -55,25 +64,24 @@ def fit_patches(image: DepthImage, parameters: RegionParameters, noise: NoiseLev
     """
     camera = image.camera
     size = patch_size(camera, parameters)
-    rows, columns = camera.height // size, camera.width // size
-    sums = np.zeros((rows, columns, SUMS))
+    sums = np.zeros((-(-camera.height // size), -(-camera.width // size), SUMS))
     _sum_patches(image.depth, intrinsics(camera), camera.near, min(camera.far, parameters.depth_max), size, sums)
     if image.body_world:
         _drop_body(sums, _capsules_in_camera(image))
-    edge = size / np.sqrt(camera.fx * camera.fy)
-    nothing = np.empty((0, 0, 3))
-    patches = Patches(size, float(edge), sums, nothing, nothing[..., 0], noise or estimate_noise(sums, size**2))
-    return fit_patch_planes(patches, sums, parameters)
+    edge = float(size / np.sqrt(camera.fx * camera.fy))
+    nothing = np.empty((0, 0, 0))
+    patches = Patches(size, edge, sums, nothing, nothing, noise or estimate_noise(sums, size**2))
+    return fit_facets(patches, sums, parameters)
 
 
-def fit_patch_planes(patches: Patches, sums: Array, parameters: RegionParameters) -> Patches:
+def fit_facets(patches: Patches, sums: Array, parameters: RegionParameters) -> Patches:
     """The same grid of patches with other sums, and planes fitted to these."""
     rows, columns = sums.shape[:2]
-    planes = np.full((rows, columns, 3), np.nan)
+    facets = np.full((rows, columns, FACET), np.nan)
     sigma = np.full((rows, columns), np.inf)
     limits = np.array((parameters.noise_factor, parameters.pixel_offset, parameters.grow_offset))
-    _fit_windows(sums, patches.noise.law, patches.size**2, limits, planes, sigma)
-    return replace(patches, sums=sums, planes=planes, sigma=sigma)
+    _fit_facets(sums, patches.noise.law, patches.size**2, patches.edge, limits, facets, sigma)
+    return replace(patches, sums=sums, facets=facets, sigma=sigma)
 
 
 def _capsules_in_camera(image: DepthImage) -> Array:
@@ -97,45 +105,88 @@ def intrinsics(camera: PinholeCamera) -> Array:
 
 @kernel
 def _sum_patches(depth: NDArray[np.float32], lens: Array, near: float, far: float, size: int, sums: Array) -> None:
-    """Sum down the columns of a band first: those loops run over neighbouring pixels and vectorise."""
-    rows, columns = sums.shape[0], sums.shape[1]
-    width = columns * size
-    n, i1, i2 = np.empty(width), np.empty(width), np.empty(width)
-    w1, iw, ww = np.empty(width), np.empty(width), np.empty(width)
-    for row in range(rows):
-        for u in range(width):
-            n[u], i1[u], i2[u], w1[u], iw[u], ww[u] = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for i in range(size):
-            line = depth[row * size + i]
-            for u in range(width):
-                z = np.float64(line[u])
-                valid = (z >= near) & (z <= far)
-                w = 1.0 / z if valid else 0.0
-                m = 1.0 if valid else 0.0
-                n[u] += m
-                i1[u] += i * m
-                i2[u] += i * i * m
-                w1[u] += w
-                iw[u] += i * w
-                ww[u] += w * w
-        y0 = (row * size - lens[3]) / lens[1]
-        dy = 1.0 / lens[1]
-        for column in range(columns):
-            out = sums[row, column]
-            for j in range(size):
-                u = column * size + j
-                x = (u - lens[2]) / lens[0]
-                y1 = y0 * n[u] + dy * i1[u]
-                out[0] += n[u]
-                out[1] += x * n[u]
-                out[2] += y1
-                out[3] += w1[u]
-                out[4] += x * x * n[u]
-                out[5] += x * y1
-                out[6] += y0 * y0 * n[u] + 2.0 * y0 * dy * i1[u] + dy * dy * i2[u]
-                out[7] += x * w1[u]
-                out[8] += y0 * w1[u] + dy * iw[u]
-                out[9] += ww[u]
+    """Sum down the columns of some patches side by side first: that loop runs over neighbouring pixels, in vectors."""
+    height, width = depth.shape
+    lanes, reference = np.empty(6 * LANES, np.float32), np.empty(LANES, np.float32)
+    nearest, farthest = np.float32(near), np.float32(far)
+    one, zero = np.float32(1.0), np.float32(0.0)
+    chunk = LANES // size * size
+    for row in range(sums.shape[0]):
+        v0, v1 = row * size, min((row + 1) * size, height)
+        for left in range(0, width, chunk):
+            wide, first = min(chunk, width - left), np.uint64(left)
+            # Differences to a pixel of the patch are small, so that single precision holds their squares.
+            for j in range(0, wide, size):
+                last = min(j + size, wide)
+                z = depth[v0, left + (j + last) // 2]
+                w = one / z if (z >= nearest) & (z <= farthest) else zero
+                for k in range(j, last):
+                    reference[k] = w
+            for k in range(6 * LANES):
+                lanes[k] = zero
+            for v in range(v0, v1):
+                line, i = depth[v], np.float32(v - v0)
+                for j in range(wide):
+                    z = line[first + np.uint64(j)]
+                    valid = (z >= nearest) & (z <= farthest)
+                    m = one if valid else zero
+                    off = one / z - reference[j] if valid else zero
+                    lanes[j] += m
+                    lanes[LANES + j] += i * m
+                    lanes[2 * LANES + j] += i * i * m
+                    lanes[3 * LANES + j] += off
+                    lanes[4 * LANES + j] += i * off
+                    lanes[5 * LANES + j] += off * off
+            for j in range(0, wide, size):
+                stop = min(j + size, wide)
+                add_lanes(lanes, j, stop, left + j, v0, lens, np.float64(reference[j]), sums[row, (left + j) // size])
+
+
+@kernel
+def add_lanes(
+    lanes: NDArray[np.float32], start: int, stop: int, left: int, top: int, lens: Array, reference: float, sums: Array
+) -> None:
+    """Add columns of pixels to sums.
+
+    Args:
+        lanes: sums of 1, i, i^2, d, i d and d^2 down LANES columns; i counts rows, d = w - reference, (6 LANES,).
+        start: first lane to add.
+        stop: the lane after the last.
+        left: pixel column of the first lane.
+        top: pixel row where i is 0.
+        lens: fx, fy, cx and cy.
+        reference: what the w are relative to.
+        sums: out, (10,).
+    """
+    n, jn, jjn, i1, ji1, i2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    d, jd, id1, dd = 0.0, 0.0, 0.0, 0.0
+    first = np.uint64(start)
+    for k in range(stop - start):
+        at, j = first + np.uint64(k), np.float64(k)
+        ones, rows, offs = np.float64(lanes[at]), np.float64(lanes[at + _L1]), np.float64(lanes[at + _L3])
+        n += ones
+        jn += j * ones
+        jjn += j * j * ones
+        i1 += rows
+        ji1 += j * rows
+        i2 += lanes[at + _L2]
+        d += offs
+        jd += j * offs
+        id1 += lanes[at + _L4]
+        dd += lanes[at + _L5]
+    dx, dy = 1.0 / lens[0], 1.0 / lens[1]
+    x0, y0 = (left - lens[2]) * dx, (top - lens[3]) * dy
+    x, y = x0 * n + dx * jn, y0 * n + dy * i1
+    sums[0] += n
+    sums[1] += x
+    sums[2] += y
+    sums[3] += d + reference * n
+    sums[4] += x0 * (x + dx * jn) + dx * dx * jjn
+    sums[5] += x0 * y + dx * (y0 * jn + dy * ji1)
+    sums[6] += y0 * (y + dy * i1) + dy * dy * i2
+    sums[7] += x0 * d + dx * jd + reference * x
+    sums[8] += y0 * d + dy * id1 + reference * y
+    sums[9] += dd + reference * (2.0 * d + reference * n)
 
 
 @kernel
@@ -170,7 +221,7 @@ def fit_plane(s: Array, plane: Array) -> float:
     xx, xy, yy = s[4] / n - x * x, s[5] / n - x * y, s[6] / n - y * y
     xw, yw, ww = s[7] / n - x * w, s[8] / n - y * w, s[9] / n - w * w
     det = xx * yy - xy * xy
-    if det <= 1e-3 * (xx + yy) ** 2 * 0.25 or w <= 0.0:
+    if det <= _ROUND_MIN * (xx + yy) ** 2 or w <= 0.0:
         return np.inf
     a = (xw * yy - yw * xy) / det
     b = (yw * xx - xw * xy) / det
@@ -182,43 +233,90 @@ def fit_plane(s: Array, plane: Array) -> float:
 
 
 @kernel
-def _fit_windows(sums: Array, noise: Array, pixels: float, limits: Array, planes: Array, sigma: Array) -> None:
+def _fit_facets(
+    sums: Array, noise: Array, pixels: float, edge: float, limits: Array, facets: Array, sigma: Array
+) -> None:
     rows, columns = sums.shape[0], sums.shape[1]
-    window = np.empty(10)
-    fit = np.empty((rows, columns, 3))
-    spread = np.empty((rows, columns))
+    fits = np.empty((3, rows, columns))
+    spread = np.full((rows + 2, columns + 2), np.inf)  # with a border
+    down = np.empty((10, columns))
+    best, which = np.empty(columns), np.empty(columns)
     for row in range(rows):
+        if row > 0 and row < rows - 1:
+            seen = 0.0
+            for column in range(columns):
+                for k in range(10):
+                    down[k, column] = sums[row - 1, column, k] + sums[row, column, k] + sums[row + 1, column, k]
+                seen += down[0, column]
+            if seen > 0.0:
+                _fit_row(down, 4.5 * pixels, fits[0, row], fits[1, row], fits[2, row], spread[row + 1])
+    for row in range(rows):
+        seen = 0.0
         for column in range(columns):
-            spread[row, column] = np.inf
-    for row in range(1, rows - 1):
-        for column in range(1, columns - 1):
-            for k in range(10):
-                window[k] = 0.0
-            for i in range(row - 1, row + 2):
-                for j in range(column - 1, column + 2):
-                    for k in range(10):
-                        window[k] += sums[i, j, k]
-            if window[0] >= 4.5 * pixels:
-                spread[row, column] = fit_plane(window, fit[row, column])
-    for row in range(rows):
+            best[column], which[column] = np.inf, 0.0
+            seen += sums[row, column, 0]
+        if seen == 0.0:
+            continue
+        for i in range(3):
+            for j in range(3):
+                _choose(spread[row + i, j : j + columns], 3.0 * i + j, best, which)
         for column in range(columns):
             s = sums[row, column]
-            if s[0] < 0.5 * pixels:
+            if s[0] < _FILLED_MIN * pixels:
                 continue
             depth = s[0] / s[3]
-            best, least = -1, limits[1] + limits[0] * depth_noise(noise, depth, 1.0)
-            for i in range(max(row - 1, 0), min(row + 2, rows)):
-                for j in range(max(column - 1, 0), min(column + 2, columns)):
-                    if spread[i, j] < least:
-                        best, least = i * columns + j, spread[i, j]
-            if best < 0:
+            off = limits[0] * depth_noise(noise, depth, pixels)
+            f = facets[row, column]
+            f[4], f[5], f[6] = s[1] / s[3], s[2] / s[3], depth
+            f[7], f[8] = off, off / (np.sqrt(6.0) * edge * depth)
+            if best[column] > limits[1] + limits[0] * depth_noise(noise, depth, 1.0):
                 continue
-            plane = fit[best // columns, best % columns]
-            if abs(off_plane(s, plane)) > limits[2] + limits[0] * depth_noise(noise, depth, pixels):
-                continue
-            for k in range(3):
-                planes[row, column, k] = plane[k]
-            sigma[row, column] = least
+            i, j = row - 1 + int(which[column]) // 3, column - 1 + int(which[column]) % 3
+            a, b, c = fits[0, i, j], fits[1, i, j], fits[2, i, j]
+            scale = 1.0 / np.sqrt(a * a + b * b + c * c)
+            # Not a number is no plane: a patch in which its best window's plane does not lie has none.
+            if abs(scale * (a * f[4] + b * f[5] + c * f[6] - 1.0)) <= limits[2] + off:
+                f[0], f[1], f[2], f[3] = scale * a, scale * b, scale * c, scale
+                sigma[row, column] = best[column]
+
+
+@kernel
+def _fit_row(down: Array, pixels_min: float, a: Array, b: Array, c: Array, spread: Array) -> None:
+    """Fit planes to windows of three sums of columns; the same as `fit_plane`, in vectors."""
+    for k in range(1, down.shape[1] - 1):
+        n = down[0, k - 1] + down[0, k] + down[0, k + 1]
+        r = 1.0 / n
+        x = r * (down[1, k - 1] + down[1, k] + down[1, k + 1])
+        y = r * (down[2, k - 1] + down[2, k] + down[2, k + 1])
+        w = r * (down[3, k - 1] + down[3, k] + down[3, k + 1])
+        xx = r * (down[4, k - 1] + down[4, k] + down[4, k + 1]) - x * x
+        xy = r * (down[5, k - 1] + down[5, k] + down[5, k + 1]) - x * y
+        yy = r * (down[6, k - 1] + down[6, k] + down[6, k + 1]) - y * y
+        xw = r * (down[7, k - 1] + down[7, k] + down[7, k + 1]) - x * w
+        yw = r * (down[8, k - 1] + down[8, k] + down[8, k + 1]) - y * w
+        ww = r * (down[9, k - 1] + down[9, k] + down[9, k + 1]) - w * w
+        det = xx * yy - xy * xy
+        q = 1.0 / det
+        p = (xw * yy - yw * xy) * q
+        q = (yw * xx - xw * xy) * q
+        height = w - p * x - q * y
+        variance = max(ww - p * xw - q * yw, 0.0) / (w * w * (p * p + q * q + height * height))
+        good = (n >= pixels_min) & (det > _ROUND_MIN * (xx + yy) * (xx + yy))
+        a[k], b[k] = p, q
+        spread[k + 1] = np.sqrt(variance) if good else np.inf
+    for k in range(1, down.shape[1] - 1):  # on its own, because vectors allow for few results
+        n = down[0, k - 1] + down[0, k] + down[0, k + 1]
+        x = down[1, k - 1] + down[1, k] + down[1, k + 1]
+        y = down[2, k - 1] + down[2, k] + down[2, k + 1]
+        c[k] = (down[3, k - 1] + down[3, k] + down[3, k + 1] - a[k] * x - b[k] * y) / n
+
+
+@kernel
+def _choose(spread: Array, index: float, best: Array, which: Array) -> None:
+    for k in range(best.shape[0]):
+        better = spread[k] < best[k]
+        best[k] = spread[k] if better else best[k]
+        which[k] = index if better else which[k]
 
 
 @kernel
@@ -227,13 +325,6 @@ def off_plane(s: Array, plane: Array) -> float:
     w = s[3] / s[0]
     a, b, c = plane[0], plane[1], plane[2]
     return ((a * s[1] + b * s[2]) / s[0] + c - w) / (w * np.sqrt(a * a + b * b + c * c))
-
-
-@kernel
-def cosine(p: Array, q: Array) -> float:
-    """Cosine of the angle between the normals of two planes."""
-    pq = p[0] * q[0] + p[1] * q[1] + p[2] * q[2]
-    return pq / np.sqrt((p[0] ** 2 + p[1] ** 2 + p[2] ** 2) * (q[0] ** 2 + q[1] ** 2 + q[2] ** 2))
 
 
 @kernel

@@ -27,9 +27,10 @@ def label_pixels(
     depth: NDArray[np.float32],
     size: int,
     limits: Array,
-    patch_depth: Array,
+    patch_sums: Array,
     patch_labels: NDArray[np.int32],
-    planes: NDArray[np.float32],
+    planes: Array,
+    pixel_planes: NDArray[np.float32],
     inner: NDArray[np.bool_],
     labels: PixelLabels,
     sure: PixelLabels,
@@ -40,10 +41,11 @@ def label_pixels(
         depth: the image.
         size: edge of a patch [px].
         limits: nearest and farthest valid depth, pixel offset, noise factor and the law of the noise.
-        patch_depth: mean depth of each patch, (rows, columns).
+        patch_sums: sums of each patch, (rows, columns, 10).
         patch_labels: one or two layers of regions, (layers, rows, columns).
-        planes: w = a u + b v + c over pixels, (R, 3).
-        inner: out, whether a patch lies inside a region.
+        planes: planes of the regions, (R, 3).
+        pixel_planes: the same over pixels, w = a u + b v + c, (R, 3).
+        inner: out, whether all of a patch is in one region.
         labels: out, region of each pixel; -1 for none.
         sure: out, the same less the pixels at odds.
     """
@@ -68,28 +70,86 @@ def label_pixels(
                 continue
             v0, u0 = row * size, column * size
             v1, u1 = min(v0 + size, height), min(u0 + size, width)
+            here = max(patch_labels[0, row, column], patch_labels[layers - 1, row, column])
+            s = patch_sums[row, column]
+            mean_depth = s[0] / s[3] if s[0] > 0.0 else limits[0]
+            cap, none, none_sure = _misfits(limits, mean_depth)
+            count = 0
+            if not uniform:
+                count = _candidates(patch_labels, row, column, candidates)
+                if here >= 0 and s[0] >= 0.5 * size * size and s[9] > 0.0:
+                    uniform = _spread_about(s, planes[here]) <= none_sure and _apart(
+                        candidates, count, here, pixel_planes, u0, v0, size, cap
+                    )
             inner[row, column] = uniform
             if uniform:
-                label = np.int16(max(patch_labels[0, row, column], patch_labels[layers - 1, row, column]))
-                for v in range(v0, v1):
-                    for u in range(u0, u1):
-                        labels[v, u] = label
-                        sure[v, u] = label
+                _paint(labels, here, v0, u0, v1, u1)
+                _paint(sure, here, v0, u0, v1, u1)
                 continue
-            count = _candidates(patch_labels, row, column, candidates)
-            cap, none, none_sure = _misfits(limits, max(patch_depth[row, column], limits[0]))
             for left in range(u0, u1, LANES - 2 * RADIUS):
                 _load(depth, v0 - RADIUS, left - RADIUS, near, far, block)
                 _start(block, none, none_sure, costs, column_sums, least, odd, chosen)
                 for k in range(count):
-                    a, b, c = planes[candidates[k]]
+                    a, b, c = pixel_planes[candidates[k]]
                     corner = a * np.float32(left - RADIUS) + b * np.float32(v0 - RADIUS) + c
                     _compete(block, right, down, a, b, corner, cap, costs, column_sums, least, chosen, candidates[k])
+                wide, first = min(LANES - 2 * RADIUS, u1 - left), np.uint64(left)
                 for v in range(v0, v1):
-                    first = (v - v0) * LANES - left
-                    for u in range(left, min(left + LANES - 2 * RADIUS, u1)):
-                        labels[v, u] = chosen[first + u]
-                        sure[v, u] = chosen[first + u] if least[first + u] < odd[first + u] else -1
+                    start = np.uint64((v - v0) * LANES)
+                    firm, doubted = labels[v], sure[v]
+                    for j in range(wide):
+                        k = start + np.uint64(j)
+                        firm[first + np.uint64(j)] = chosen[k]
+                        doubted[first + np.uint64(j)] = chosen[k] if least[k] < odd[k] else np.int16(-1)
+
+
+@kernel
+def _paint(labels: PixelLabels, label: int, v0: int, u0: int, v1: int, u1: int) -> None:
+    value, first, wide = np.int16(label), np.uint64(u0), u1 - u0
+    for v in range(v0, v1):
+        line = labels[v]
+        for j in range(wide):
+            line[first + np.uint64(j)] = value
+
+
+@kernel
+def _spread_about(s: Array, plane: Array) -> float:
+    """Mean square, over the pixels of sums, of the relative difference of inverse depth to a plane."""
+    a, b, c = plane
+    square = s[9] - 2.0 * (a * s[7] + b * s[8] + c * s[3]) + a * a * s[4] + b * b * s[6] + c * c * s[0]
+    square += 2.0 * (a * b * s[5] + c * (a * s[1] + b * s[2]))
+    return square / s[9]
+
+
+@kernel
+def _apart(
+    candidates: NDArray[np.int32],
+    count: int,
+    here: int,
+    planes: NDArray[np.float32],
+    u0: int,
+    v0: int,
+    size: int,
+    cap: np.float32,
+) -> bool:
+    """Whether all candidates stay so far from one plane, over a patch and its windows, that no pixel is mistaken."""
+    least = 1.5 * np.sqrt(cap)
+    first, last = -RADIUS, size - 1 + RADIUS
+    a, b, c = planes[here]
+    for k in range(count):
+        if candidates[k] == here:
+            continue
+        p, q, r = planes[candidates[k]]
+        below, above = True, True
+        for corner in range(4):
+            u, v = u0 + (first if corner % 2 else last), v0 + (first if corner // 2 else last)
+            w = a * u + b * v + c
+            ratio = (p * u + q * v + r) / w - 1.0
+            below &= ratio < -least
+            above &= ratio > least
+        if not (below or above):
+            return False
+    return True
 
 
 @kernel
@@ -108,15 +168,17 @@ def _misfits(limits: Array, depth: float) -> tuple[np.float32, np.float32, np.fl
 def _survey(patch_labels: NDArray[np.int32], row: int, column: int) -> tuple[bool, bool]:
     """Whether all 3 x 3 patches around one have the same single region, and whether the last layer has one there."""
     layers, rows, columns = patch_labels.shape
-    last = layers - 1
-    here, above = patch_labels[0, row, column], patch_labels[last, row, column]
-    uniform = (here >= 0) != (above >= 0) if layers > 1 else here >= 0
-    near_last = False
-    for i in range(max(row - 1, 0), min(row + 2, rows)):
-        for j in range(max(column - 1, 0), min(column + 2, columns)):
-            uniform &= (patch_labels[0, i, j] == here) & (patch_labels[last, i, j] == above)
-            near_last |= patch_labels[last, i, j] >= 0
-    return uniform, near_last
+    uniform, near_last = True, False
+    for layer in range(layers):
+        here = patch_labels[layer, row, column]
+        near_last = here >= 0
+        for i in range(max(row - 1, 0), min(row + 2, rows)):
+            line = patch_labels[layer, i]
+            for j in range(max(column - 1, 0), min(column + 2, columns)):
+                uniform &= line[j] == here
+                near_last |= line[j] >= 0
+    here, above = patch_labels[0, row, column], patch_labels[layers - 1, row, column]
+    return uniform and ((here >= 0) != (above >= 0) if layers > 1 else here >= 0), near_last
 
 
 @kernel
@@ -150,9 +212,10 @@ def _load(
             for j in range(LANES):
                 block[first + j] = zero
         elif left >= 0 and left + LANES <= width:
+            line, start, target = depth[v], np.uint64(left), np.uint64(first)
             for j in range(LANES):
-                z = depth[v, left + j]
-                block[first + j] = z if (z >= near) & (z <= far) else zero
+                z = line[start + np.uint64(j)]
+                block[target + np.uint64(j)] = z if (z >= near) & (z <= far) else zero
         else:
             for j in range(LANES):
                 u = left + j

@@ -18,8 +18,8 @@ from skills.kernels import kernel
 from skills.regions.growing import PatchRegions, grow_regions
 from skills.regions.noise_level import NoiseLevel, depth_noise
 from skills.regions.parameters import RegionParameters
-from skills.regions.patches import SUMS, Patches, fit_patch_planes, fit_plane, intrinsics, off_plane
-from skills.regions.pixel_labels import LANES, PixelLabels, label_pixels
+from skills.regions.patches import LANES, SUMS, Patches, fit_facets, fit_plane, intrinsics, off_plane
+from skills.regions.pixel_labels import PixelLabels, label_pixels
 from skills.regions.pixel_sums import sum_pixels
 
 
@@ -53,21 +53,21 @@ def refine_regions(
     depth = image.depth
     labels, sure = np.full(depth.shape, -1, dtype=np.int16), np.full(depth.shape, -1, dtype=np.int16)
     inner = np.zeros(coarse.labels.shape, dtype=np.bool_)
-    patch_depth = patches.sums[..., 0] / np.maximum(patches.sums[..., 3], 1e-9)
     planes, layers = coarse.planes, coarse.labels[None]
-    label_pixels(depth, patches.size, limits, patch_depth, layers, _in_pixels(planes, lens), inner, labels, sure)
+    pixel_planes = _in_pixels(planes, lens)
+    label_pixels(depth, patches.size, limits, patches.sums, layers, planes, pixel_planes, inner, labels, sure)
     left = np.zeros(patches.sums.shape)
     if _sum_left(depth, patches.size, limits, lens, patches.sums, inner, sure, left):
-        rest = grow_regions(fit_patch_planes(patches, left, parameters), parameters)
+        rest = grow_regions(fit_facets(patches, left, parameters), parameters)
         if len(rest.planes):
             planes = np.concatenate((planes, rest.planes))
             found = np.where(rest.labels >= 0, rest.labels + len(coarse.planes), -1).astype(np.int32)
             layers = np.stack((coarse.labels, found))
             pixel_planes = _in_pixels(planes, lens)
-            label_pixels(depth, patches.size, limits, patch_depth, layers, pixel_planes, inner, labels, sure)
+            label_pixels(depth, patches.size, limits, patches.sums, layers, planes, pixel_planes, inner, labels, sure)
     planes = np.array(planes)
     sums, sigma, bend = np.zeros((len(planes), SUMS)), np.zeros(len(planes)), np.zeros(len(planes))
-    _sum_regions(depth, patches.size, limits, lens, patches.sums, inner, labels, planes, sums)
+    _sum_regions(depth, patches.size, limits, lens, patches.sums, inner, labels, pixel_planes, sums)
     _refit(patches.sums, patches.size, limits[4:], inner, labels, sums, planes, sigma, bend)
     return Segmentation(labels, planes, sigma, bend, patches.noise)
 
@@ -93,8 +93,8 @@ def _sum_left(
     """Sums over the pixels of each patch that are in no region or at odds with theirs; whether there are any."""
     rows, columns = inner.shape
     height, width = depth.shape
-    lanes = np.empty((6, LANES), np.float32)
-    nowhere = np.zeros(3)
+    lanes = np.empty(6 * LANES, np.float32)
+    nowhere = np.zeros(3, np.float32)
     found = False
     for row in range(rows):
         for column in range(columns):
@@ -125,13 +125,13 @@ def _sum_regions(
     patch_sums: Array,
     inner: NDArray[np.bool_],
     labels: PixelLabels,
-    planes: Array,
+    planes: NDArray[np.float32],
     sums: Array,
 ) -> None:
     """Sums over the pixels of each region that lie in its plane."""
     rows, columns = inner.shape
     height, width = depth.shape
-    lanes = np.empty((6, LANES), np.float32)
+    lanes = np.empty(6 * LANES, np.float32)
     found = np.empty(size * size, np.int16)
     for row in range(rows):
         for column in range(columns):
