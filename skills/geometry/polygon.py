@@ -26,6 +26,21 @@ def signed_area(polygon: Array) -> float:
 
 
 @kernel
+def centroid(polygon: Array) -> tuple[float, float]:
+    """Centre of the area of a simple polygon of either direction."""
+    area, x, y = 0.0, 0.0, 0.0
+    # About the first vertex, where products stay small.
+    for i in range(1, polygon.shape[0] - 1):
+        ax, ay = polygon[i, 0] - polygon[0, 0], polygon[i, 1] - polygon[0, 1]
+        bx, by = polygon[i + 1, 0] - polygon[0, 0], polygon[i + 1, 1] - polygon[0, 1]
+        triangle = ax * by - bx * ay
+        area += triangle
+        x += triangle * (ax + bx)
+        y += triangle * (ay + by)
+    return polygon[0, 0] + x / (3.0 * area), polygon[0, 1] + y / (3.0 * area)
+
+
+@kernel
 def turn(polygon: Array, a: int, b: int, c: int) -> float:
     """Twice the signed area of a triangle of vertices: positive where a, b, c turn left."""
     ux, uy = polygon[b, 0] - polygon[a, 0], polygon[b, 1] - polygon[a, 1]

@@ -15,12 +15,17 @@ Array = NDArray[np.float64]
 
 
 def readonly(values: ArrayLike, shape: tuple[int | None, ...] | None = None) -> Array:
-    """Copy values into a read-only float64 array; `None` in the shape stands for any length.
+    """Values as a read-only float64 array; `None` in the shape stands for any length.
+
+    Whoever made an array read-only has promised not to change it; all else is copied.
 
     Raises:
         ValueError: where the shape does not fit.
     """
-    array = np.array(values, dtype=np.float64)
+    if isinstance(values, np.ndarray) and values.dtype == np.float64 and not values.flags.writeable:
+        array = values
+    else:
+        array = np.array(values, dtype=np.float64)
     # Most shapes are simply equal, and this runs for every pose that is made.
     if (
         shape is not None

@@ -9,24 +9,21 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import accumulate, pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.camera import DepthImage
-from skills.geometry.convex_decomposition import decompose
-from skills.geometry.polygon import contains_point, signed_area
-from skills.geometry.pose import Array, Pose, readonly
-from skills.geometry.simplification import simplify_rings
+from skills.geometry.pose import Array, readonly
 from skills.regions.growing import grow_regions
 from skills.regions.noise_level import NoiseLevel
-from skills.regions.outline import Indices, Outlines, trace_outlines
+from skills.regions.outline import trace_outlines
 from skills.regions.parameters import RegionParameters
 from skills.regions.patches import fit_patches, patch_size
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
-from skills.regions.plane_outlines import PlaneOutlines, back_project
+from skills.regions.plane_outlines import back_project
 from skills.regions.refinement import refine_regions
+from skills.regions.region_shapes import shape_regions
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -128,86 +125,43 @@ def polygons_of(
     patch_pixels = patch_size(image.camera, parameters) ** 2
     outlines = trace_outlines(labels, patch_pixels // 4)
     on_planes = back_project(outlines, image, planes)
-    tolerances = np.maximum(parameters.outline_tolerance, on_planes.pixels)
-    starts, owners = outlines.starts.tolist(), outlines.labels.tolist()
-    areas, depths, pixels = on_planes.areas.tolist(), on_planes.depths.tolist(), outlines.pixels.tolist()
-    steepness, bends = on_planes.R_world_planes[:, 2, 2].tolist(), bend.tolist()
-    sigmas = sigma.tolist()
+    accepted: list[int] = []
+    rejected: list[RejectedRegion] = []
+
+    def reject(loop: int, cause: str, reason: str) -> None:
+        outline = outlines.points[starts[loop] : starts[loop + 1]]
+        rejected.append(RejectedRegion(owners[loop], cause, reason, outline))
+
+    starts, owners, pixels = outlines.starts.tolist(), outlines.labels.tolist(), outlines.pixels.tolist()
+    areas, depths = on_planes.areas.tolist(), on_planes.depths.tolist()
+    upwards, bends, sigmas = on_planes.R_world_planes[:, 2, 2].tolist(), bend.tolist(), sigma.tolist()
+    for loop, label in enumerate(owners):
+        patches = pixels[loop] / patch_pixels
+        if patches < 0.0:
+            continue
+        objection = _objection(areas[loop], upwards[label], depths[loop], patches, bends[label], parameters, noise)
+        if objection:
+            reject(loop, *objection)
+        else:
+            accepted.append(loop)
     regions: list[PlanarRegion] = []
     region_labels: list[int] = []
-    rejected: list[RejectedRegion] = []
-    for loop, label in enumerate(owners):
-        if pixels[loop] < 0:
+    for shape in shape_regions(accepted, outlines, on_planes, parameters):
+        if not shape.rings:
+            reject(shape.loop, "thin", "thinner than the outline's tolerance")
             continue
-        objection = _objection(
-            areas[loop], steepness[label], depths[loop], pixels[loop] / patch_pixels, bends[label], parameters, noise
+        label = owners[shape.loop]
+        hull, *holes = shape.rings
+        regions.append(
+            PlanarRegion(shape.T_world_region, hull, shape.parts, shape.area, image.time, tuple(holes), sigmas[label])
         )
-        if not objection:
-            rings = [loop, *_holes_in(loop, outlines, areas, parameters.hole_area_min)]
-            region = _region(
-                rings, label, starts, on_planes, tolerances, parameters.convex_tolerance, image.time, sigmas[label]
-            )
-            if region:
-                regions.append(region)
-                region_labels.append(label)
-                continue
-            objection = ("thin", "thinner than the outline's tolerance")
-        rejected.append(RejectedRegion(label, *objection, outlines.points[starts[loop] : starts[loop + 1]]))
+        region_labels.append(label)
     return tuple(regions), tuple(region_labels), tuple(rejected)
-
-
-def _region(
-    rings: list[int],
-    label: int,
-    starts: list[int],
-    on_planes: PlaneOutlines,
-    tolerances: Array,
-    convex_tolerance: float,
-    time: float,
-    sigma: float,
-) -> PlanarRegion | None:
-    """The region of an outline and its holes; none where it is thinner than the tolerance."""
-    R = on_planes.R_world_planes[label]
-    first, last = starts[rings[0]], starts[rings[0] + 1]
-    points, limits, ends = on_planes.points[first:last], tolerances[first:last], [0, last - first]
-    if len(rings) > 1:
-        spans = [slice(starts[ring], starts[ring + 1]) for ring in rings]
-        points = np.concatenate([on_planes.points[span] for span in spans])
-        limits = np.concatenate([tolerances[span] for span in spans])
-        ends = [0, *accumulate(span.stop - span.start for span in spans)]
-    vertices, ring_ends = simplify_rings(points, np.array(ends), limits)
-    if ring_ends[0] == 0:
-        return None
-    x, y = vertices[: ring_ends[0]].mean(axis=0)
-    vertices -= (x, y)
-    parts, part_ends = decompose(vertices, ring_ends, convex_tolerance)
-    hull, *holes = _cut(vertices, ring_ends)
-    holes = tuple(hole for hole in holes if len(hole))
-    area = float(signed_area(hull)) + sum(float(signed_area(hole)) for hole in holes)
-    T_world_region = Pose(R, R @ np.array((x, y, on_planes.heights[label])))
-    return PlanarRegion(T_world_region, hull, _cut(parts, part_ends), area, time, holes, sigma)
-
-
-def _cut(stacked: Array, ends: Indices) -> tuple[Array, ...]:
-    """Polygons that are stacked."""
-    return tuple(stacked[a:b] for a, b in pairwise((0, *ends.tolist())))
-
-
-def _holes_in(loop: int, outlines: Outlines, areas: list[float], area_min: float) -> list[int]:
-    """The holes within an outline."""
-    owners, starts, points = outlines.labels, outlines.starts, outlines.points
-    candidates = np.flatnonzero((owners == owners[loop]) & (outlines.pixels < 0)).tolist()
-    around = points[starts[loop] : starts[loop + 1]]
-    return [
-        hole
-        for hole in candidates
-        if -areas[hole] >= area_min and contains_point(around, points[starts[hole], 0], points[starts[hole], 1])
-    ]
 
 
 def _objection(
     area: float,
-    steepness: float,
+    upwards: float,
     depth: float,
     patches: float,
     bend: float,
@@ -215,7 +169,7 @@ def _objection(
     noise: NoiseLevel,
 ) -> tuple[str, str] | None:
     """Cause and reason why an outline is no region, if there is one."""
-    slope = math.acos(min(max(steepness, -1.0), 1.0))
+    slope = math.acos(min(max(upwards, -1.0), 1.0))
     if math.isinf(depth):
         return "edge-on", "seen edge-on: its plane leaves the camera's range within its outline"
     if area < parameters.area_min:

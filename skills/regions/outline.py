@@ -21,7 +21,6 @@ from skills.kernels import kernel
 Labels = NDArray[np.int16]
 Indices = NDArray[np.int64]
 
-RIGHT, BELOW, LEFT, ABOVE = range(4)
 _STRETCH = 32  # pixels of a row that are looked at together [px]
 
 
@@ -65,9 +64,9 @@ def _trace(labels: Labels, pixels_min: int) -> tuple[Array, Indices, Indices, In
             last = min(first + _STRETCH, columns)
             if first > 0 and last - first == _STRETCH:
                 # Most stretches hold no crack; comparing all their pixels at once is cheaper than one by one.
-                here, before, change = line[first:], line[first - 1 :], np.int16(0)
+                stretch, before, change = line[first:], line[first - 1], np.int16(0)
                 for k in range(_STRETCH):
-                    change |= here[k] ^ before[k]
+                    change |= stretch[k] ^ before
                 if change == 0:
                     continue
             for column in range(first, last):
@@ -94,34 +93,31 @@ def _follow(
     labels: Labels, row: int, column: int, passed: NDArray[np.uint8], points: Array, written: int
 ) -> tuple[int, int, Array]:
     """Write the loop that begins at the left of a pixel; its end, the pixels it encloses, and where it was written."""
-    i, j, side = row, column, LEFT
+    label = labels[row, column]
+    x, y, out_x, out_y = column, row, -1, 0
     run, pixels = 1, 0
     while True:
         # Only the ends of a straight run of cracks are vertices.
         if run > 2:
             written -= 1
-        elif written + 2 > points.shape[0]:
+        elif written == points.shape[0]:
             points = _grown(points)
-        points[written, 0] = j + 0.5 * ((side == RIGHT) - (side == LEFT))
-        points[written, 1] = i + 0.5 * ((side == BELOW) - (side == ABOVE))
+        points[written, 0], points[written, 1] = x + 0.5 * out_x, y + 0.5 * out_y
         written += 1
-        if side == LEFT:
-            passed[i, j] = 1
-            pixels -= j
-        elif side == RIGHT:
-            pixels += j + 1
+        if out_x < 0:
+            passed[y, x] = 1
+            pixels -= x
+        elif out_x > 0:
+            pixels += x + 1
         # The next crack: around the same pixel's corner, straight on, or around a concave corner.
-        before = side
-        turn = (side + 3) % 4
-        if _open(labels, i, j, turn):
-            side = turn
+        if not _has(labels, x + out_y, y - out_x, label):
+            out_x, out_y, run = out_y, -out_x, 1
         else:
-            i, j = i + (turn == BELOW) - (turn == ABOVE), j + (turn == RIGHT) - (turn == LEFT)
-            if not _open(labels, i, j, side):
-                i, j = i + (side == BELOW) - (side == ABOVE), j + (side == RIGHT) - (side == LEFT)
-                side = (side + 1) % 4
-        run = run + 1 if side == before else 1
-        if side == LEFT and i == row and j == column:
+            x, y, run = x + out_y, y - out_x, run + 1
+            if _has(labels, x + out_x, y + out_y, label):
+                x, y = x + out_x, y + out_y
+                out_x, out_y, run = -out_y, out_x, 1
+        if x == column and y == row and out_x < 0:
             return written, pixels, points
 
 
@@ -136,9 +132,6 @@ def _grown(rows: Any) -> Any:
 
 
 @kernel
-def _open(labels: Labels, row: int, column: int, side: int) -> bool:
-    """Whether the side of a pixel is a crack."""
-    i, j = row + (side == BELOW) - (side == ABOVE), column + (side == RIGHT) - (side == LEFT)
-    if i < 0 or j < 0 or i >= labels.shape[0] or j >= labels.shape[1]:
-        return True
-    return labels[i, j] != labels[row, column]
+def _has(labels: Labels, x: int, y: int, label: int) -> bool:
+    """Whether a pixel is in the image and has a label."""
+    return 0 <= x < labels.shape[1] and 0 <= y < labels.shape[0] and labels[y, x] == label

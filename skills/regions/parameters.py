@@ -64,7 +64,10 @@ class RegionParameters:
         0.45, unit="m", minimum=0.0, maximum=5.0, meaning="regions nearer to the camera are the robot's own body"
     )
     outline_tolerance: float = parameter(
-        0.008, unit="m", minimum=0.0005, maximum=0.1, meaning="how far the simplified outline may stray"
+        0.01, unit="m", minimum=0.0005, maximum=0.1, meaning="how far the outline between two corners may stray"
+    )
+    outline_pixels: float = parameter(
+        2.5, unit="px", minimum=0.5, maximum=20.0, meaning="the same as seen by the camera; the greater of both counts"
     )
     convex_tolerance: float = parameter(
         0.015, unit="m", minimum=0.0005, maximum=0.2, meaning="depth of notches that convex parts fill"
