@@ -9,27 +9,41 @@ TIMELINE = "robot_time"
 
 def default_blueprint(start: tuple[float, float], goal: tuple[float, float]) -> rrb.Blueprint:
     """The layout for a walk from start to goal, both (x, y) in the world [m]."""
-    scene = rrb.Spatial3DView(
-        name="Walk",
-        origin="/world",
-        background=rrb.Background(color=(208, 216, 226, 255)),
-        line_grid=rrb.LineGrid3D(visible=False),
-        eye_controls=rrb.EyeControls3D(
+    scene = _scene(
+        "Walk",
+        ["/world/**", "- /world/around/**"],
+        rrb.EyeControls3D(
             kind=rrb.components.Eye3DKind.Orbital,
             position=(start[0] - 0.8, start[1] - 2.0, 1.7),
             look_target=(start[0] + 0.3, start[1], 0.8),
             tracking_entity="/world/robot/pelvis",
         ),
     )
+    around = _scene(
+        "Heights around",
+        ["/world/around/**", "/world/robot/**", "/world/path", "/world/goal"],
+        rrb.EyeControls3D(
+            kind=rrb.components.Eye3DKind.Orbital,
+            position=(start[0] - 5.0, start[1] - 5.0, 6.0),
+            look_target=(0.5 * (start[0] + goal[0]), 0.5 * (start[1] + goal[1]), 0.0),
+        ),
+    )
     tree = rrb.StateTimelineView(name="Behavior tree", origin="/tree")
     eyes = rrb.Horizontal(
-        rrb.Spatial2DView(name="Depth image", origin="/camera/depth"),
         rrb.Spatial2DView(name="Regions extracted", origin="/camera/regions"),
+        rrb.Tabs(
+            rrb.Spatial2DView(name="Depth image", origin="/camera/depth"),
+            rrb.TextDocumentView(name="Rejected", origin="/camera/rejected"),
+            rrb.TextDocumentView(name="Map", origin="/map"),
+            rrb.Spatial2DView(name="Height map", origin="/height_map"),
+        ),
     )
     plots = rrb.Tabs(
         rrb.TimeSeriesView(name="Planning time [ms]", origin="/timing/PlanFootsteps"),
         rrb.TimeSeriesView(name="Region time [ms]", origin="/timing/ExtractRegions"),
         rrb.TimeSeriesView(name="DCM error [mm]", origin="/control/dcm_error"),
+        rrb.TimeSeriesView(name="Noise at 1 m [mm]", origin="/noise"),
+        rrb.TimeSeriesView(name="Drift [mm]", origin="/drift"),
         rrb.TimeSeriesView(name="Sideways motion [m]", origin="/control/lateral"),
         name="Plots",
     )
@@ -39,7 +53,7 @@ def default_blueprint(start: tuple[float, float], goal: tuple[float, float]) -> 
     )
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(scene, tree, row_shares=[3, 2]),
+            rrb.Vertical(rrb.Tabs(scene, around, active_tab=0), tree, row_shares=[3, 2]),
             rrb.Vertical(eyes, plots, reasons, row_shares=[3, 3, 3]),
             column_shares=[3, 2],
         ),
@@ -47,4 +61,15 @@ def default_blueprint(start: tuple[float, float], goal: tuple[float, float]) -> 
         rrb.SelectionPanel(state="collapsed"),
         rrb.TimePanel(state="collapsed", timeline=TIMELINE),
         auto_views=False,
+    )
+
+
+def _scene(name: str, contents: list[str], eye_controls: rrb.EyeControls3D) -> rrb.Spatial3DView:
+    return rrb.Spatial3DView(
+        name=name,
+        origin="/world",
+        contents=contents,
+        background=rrb.Background(color=(208, 216, 226, 255)),
+        line_grid=rrb.LineGrid3D(visible=False),
+        eye_controls=eye_controls,
     )

@@ -35,6 +35,11 @@ def encoded_picture(picture: NDArray[np.uint8]) -> rr.EncodedImage:
     )
 
 
+def encoded_drawing(picture: NDArray[np.uint8]) -> rr.EncodedImage:
+    """An RGB picture of few colours, (h, w, 3), as a PNG."""
+    return rr.EncodedImage(contents=_encode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR)), media_type="image/png")
+
+
 def pinhole_of(image: DepthImage) -> tuple[rr.Pinhole, rr.Transform3D]:
     """The camera of an image, and where it was."""
     camera, T_world_camera = image.camera, image.T_world_camera

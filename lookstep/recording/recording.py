@@ -18,21 +18,22 @@ from lookstep.moment import Moment
 from lookstep.recording import palette, scene
 from lookstep.recording.blueprint import TIMELINE, default_blueprint
 from lookstep.recording.columns import Columns
-from lookstep.recording.images import encoded_depth, encoded_picture, pinhole_of
+from lookstep.recording.perception import PerceptionViews
 from sim_envs.robot import RobotDescription
 from sim_envs.worlds import KinematicWorld
 from skills.body_path import BodyPath, Goal, SubGoal
 from skills.footsteps import FootstepPlan, Side
 from skills.geometry import Pose
-from skills.regions import PlanarRegions, RegionExtraction, debug_image
+from skills.height_map import HeightMap
+from skills.regions import GroundUpdate, PlanarRegions, RegionExtraction
 from skills.walking import StepEventKind
 
 _APPLICATION = "lookstep"
 # Links are drawn, images and maps of the ground kept at these periods; everything else when it changes [s].
 _LINK_PERIOD = 0.05
-_VALUE_PERIODS: dict[type, float] = {RegionExtraction: 1.0, PlanarRegions: 0.5}
+_VALUE_PERIODS: dict[type, float] = {RegionExtraction: 0.5, PlanarRegions: 0.5, HeightMap: 2.0}
 _FLUSH_PERIOD = 2.0
-_PICTURE_WIDTH = 640
+_REASON_PERIOD = 1.0
 _SUB_GOAL_RADIUS = 0.05
 _STATES = {
     Status.RUNNING: "running",
@@ -65,9 +66,11 @@ class Recording:
         self._course = course
         self._sole = robot.sole_corners_sole
         self._columns = Columns(self._stream)
+        self._perception = PerceptionViews(self._stream, self._columns)
         self._taken: list[tuple[Side, Pose]] = []
         self._seen: dict[str, Any] = {}
         self._reasons: dict[str, str] = {}
+        self._next_reason: dict[str, float] = {}
         self._box_poses: dict[str, Any] = {}
         self._next_links = self._next_flush = 0.0
         self._next_value: dict[str, float] = {}
@@ -105,6 +108,9 @@ class Recording:
             ("control/lateral/com", palette.COM, "CoM"),
             ("control/lateral/dcm", palette.DCM, "DCM"),
             ("control/lateral/cop", palette.RIGHT, "CoP"),
+            ("noise/own", palette.MEASURED, "of a pixel"),
+            ("noise/shared", palette.BUDGET, "shared by neighbours"),
+            ("drift/shift", palette.MEASURED, "correction of the estimate"),
             ("timing/PlanFootsteps/used", palette.MEASURED, "footstep plan"),
             ("timing/PlanFootsteps/budget", palette.BUDGET, "budget"),
             ("timing/ExtractRegions/used", palette.MEASURED, "regions"),
@@ -147,7 +153,11 @@ class Recording:
                 log(f"world/{key}/outlines", scene.region_outlines(value))
                 log(f"world/{key}/surfaces", scene.region_surfaces(value, scene.colors_by_place(value)))
             case RegionExtraction():
-                self._log_images(value)
+                self._perception.log_extraction(value)
+            case GroundUpdate():
+                self._perception.log_update(value, moment.time)
+            case HeightMap():
+                self._perception.log_heights(value, moment.world.lidar_scan())
             case FootstepPlan():
                 log(f"world/{key}/steps", scene.planned_soles(value.steps, self._sole))
                 log(f"world/{key}/swings", scene.swing_ways(value.steps, moment.status.imminent_stance))
@@ -161,24 +171,22 @@ class Recording:
             case _:
                 pass
 
-    def _log_images(self, extraction: RegionExtraction) -> None:
-        self._stream.log("camera/depth", encoded_depth(extraction.image))
-        stride = 2 if extraction.image.camera.width > _PICTURE_WIDTH else 1
-        self._stream.log(
-            "camera/regions",
-            encoded_picture(debug_image(extraction, stride, scene.colors_by_place(extraction.regions))),
-        )
-        self._stream.log("world/camera", *pinhole_of(extraction.image))
-
     def _log_tree(self, moment: Moment) -> None:
         for transition in moment.tree.transitions:
             self._columns.state(self._lanes[transition.path], moment.time, _STATES[transition.after])
         for node in moment.tree.nodes:
             if not node.children and node.status in _ENDED and node.reason != self._reasons.get(node.path, ""):
                 self._reasons[node.path] = node.reason
-                self._log_line(node.name, node.reason, "INFO")
+                self._log_reason(node, moment.time)
         for line in moment.log:
             self._log_line(line.path.rpartition("/")[2], line.text, _LEVELS[line.level])
+
+    def _log_reason(self, node: Node, time: float) -> None:
+        """Why a leaf ended; one that succeeds over and over with new figures is heard once in a while."""
+        if node.status is Status.SUCCESS and time < self._next_reason.get(node.path, 0.0):
+            return
+        self._next_reason[node.path] = time + _REASON_PERIOD
+        self._log_line(node.name, node.reason, "INFO")
 
     def _log_line(self, source: str, text: str, level: str) -> None:
         if text:

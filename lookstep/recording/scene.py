@@ -66,7 +66,7 @@ def _merged(model: mujoco.MjModel, mesh: GeomMesh, members: np.ndarray) -> rr.Me
 def region_outlines(regions: PlanarRegions) -> rr.LineStrips3D:
     """Outline of every region in its colour."""
     strips = [
-        _closed(_lifted(region.T_world_region, region.hull_region, _REGION_LIFT + _NEWER_LIFT * i))
+        closed(_lifted(region.T_world_region, region.hull_region, _REGION_LIFT + _NEWER_LIFT * i))
         for i, region in enumerate(regions.regions)
     ]
     return rr.LineStrips3D(strips, colors=[palette.REGION_EDGE] * len(strips), radii=0.004)
@@ -140,7 +140,8 @@ def _lifted(T_world_plane: Pose, polygon: Array, lift: float) -> Array:
     return T_world_plane @ np.column_stack((polygon, np.full(len(polygon), lift)))
 
 
-def _closed(points: Array) -> Array:
+def closed(points: Array) -> Array:
+    """A line around a polygon, (N + 1, d)."""
     return np.vstack((points, points[:1]))
 
 

@@ -33,7 +33,11 @@ def test_recording_shows_robot_course_regions_steps_and_goal(chunks):
 
 
 def test_recording_shows_what_the_camera_saw_and_what_became_of_it(chunks):
-    assert entities(chunks) >= {"/camera/depth", "/camera/regions"}
+    assert entities(chunks) >= {"/camera/depth", "/camera/regions", "/camera/rejected", "/noise/own", "/noise/shared"}
+
+
+def test_recording_shows_the_heights_around_and_what_the_map_forgot(chunks):
+    assert entities(chunks) >= {"/height_map", "/world/around/height_map", "/world/around/scan", "/map", "/drift/shift"}
 
 
 def test_recording_has_a_lane_for_every_node_of_the_tree(chunks):

@@ -1,0 +1,135 @@
+"""What the robot sees, as it sees it: images, what became of their pixels, what the map forgot, the heights around."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import cv2
+import numpy as np
+import rerun as rr
+from numpy.typing import NDArray
+
+from lookstep.recording import palette, scene
+from lookstep.recording.columns import Columns
+from lookstep.recording.images import encoded_depth, encoded_drawing, encoded_picture, pinhole_of
+from skills.geometry import LidarScan
+from skills.height_map import HeightMap
+from skills.regions import GroundUpdate, RegionExtraction, debug_image
+
+_PICTURE_WIDTH = 640
+_METRE = 1.0  # noise is told at this depth [m]
+_SCAN_STRIDE = 4  # every nth ring and column of a scan is kept
+_MAP_STRIDE = 2  # every nth row and column of cells is kept in 3D
+_CELL_PIXELS = 2
+_UPDATE_PERIOD = 1.0
+_SHOWN_REASONS = ("seen differently", "seen through")  # the others are everyday
+
+
+class PerceptionViews:
+    """Logs what perception found to a recording.
+
+    Args:
+        stream: the recording, whose time the caller sets.
+        columns: takes what comes often.
+    """
+
+    def __init__(self, stream: rr.RecordingStream, columns: Columns) -> None:
+        self._stream = stream
+        self._columns = columns
+        self._forgotten: Counter[str] = Counter()
+        self._next_update = 0.0
+
+    def log_extraction(self, extraction: RegionExtraction) -> None:
+        """The depth image, what became of its pixels, and why pieces of it were rejected."""
+        log = self._stream.log
+        log("camera/depth", encoded_depth(extraction.image))
+        stride = 2 if extraction.image.camera.width > _PICTURE_WIDTH else 1
+        colors = scene.colors_by_place(extraction.regions)
+        log("camera/regions", encoded_picture(debug_image(extraction, stride, colors)))
+        log("camera/rejected", rr.TextDocument(rejections(extraction), media_type="text/markdown"))
+        log("world/camera", *pinhole_of(extraction.image))
+        time, noise = extraction.image.time, extraction.noise
+        self._columns.scalar("noise/own", time, 1e3 * noise.own(_METRE))
+        self._columns.scalar("noise/shared", time, 1e3 * noise.shared(_METRE))
+
+    def log_update(self, update: GroundUpdate, time: float) -> None:
+        """What the map has forgotten so far, and by how much each image has corrected the robot's estimate."""
+        self._forgotten.update(dict(update.reasons))
+        if not update.drift.reason:
+            self._columns.scalar("drift/shift", time, 1e3 * float(np.linalg.norm(update.drift.shift_turn[:3])))
+        shown = [forgotten for forgotten in update.forgotten if forgotten.reason in _SHOWN_REASONS]
+        if shown:
+            self._stream.log(
+                "world/forgotten",
+                rr.LineStrips3D(
+                    [scene.closed(forgotten.region.hull_world) for forgotten in shown],
+                    labels=[forgotten.reason for forgotten in shown],
+                    colors=[palette.FORGOTTEN],
+                    radii=0.006,
+                ),
+            )
+        if time >= self._next_update:
+            self._next_update = time + _UPDATE_PERIOD
+            if not shown:
+                self._stream.log("world/forgotten", rr.Clear(recursive=False))
+            rows = [f"| {reason} | {count} |" for reason, count in self._forgotten.most_common()]
+            text = "\n".join((update.summary, "", "| forgotten since the start | regions |", "|---|---|", *rows))
+            self._stream.log("map", rr.TextDocument(text, media_type="text/markdown"))
+
+    def log_heights(self, heights: HeightMap, scan: LidarScan | None) -> None:
+        """The height map as a picture and as points, and the scan."""
+        known = heights.heights[~np.isnan(heights.heights)]
+        if not len(known):
+            return
+        low, high = (float(value) for value in np.percentile(known, (1.0, 99.0)))
+        colors = _height_colors(heights.heights, low, high)
+        picture = np.flipud(np.where(heights.filled[..., None], 0.6 * colors, colors)).astype(np.uint8)
+        enlarged = picture.repeat(_CELL_PIXELS, axis=0).repeat(_CELL_PIXELS, axis=1)
+        self._stream.log("height_map", encoded_drawing(enlarged))
+        step = (slice(None, None, _MAP_STRIDE),) * 2
+        v, u = np.nonzero(~np.isnan(heights.heights[step]))
+        xy = heights.origin_world + heights.resolution * (_MAP_STRIDE * np.column_stack((u, v)) + 0.5)
+        points = np.column_stack((xy, heights.heights[step][v, u])).astype(np.float32)
+        radius = 0.5 * _MAP_STRIDE * heights.resolution
+        self._stream.log("world/around/height_map", rr.Points3D(points, colors=colors[step][v, u], radii=radius))
+        if scan is not None:
+            points = _scan_points(scan)
+            self._stream.log("world/around/scan", rr.Points3D(points, colors=[palette.SCAN], radii=0.008))
+
+
+def rejections(extraction: RegionExtraction) -> str:
+    """What an extraction rejected and why, as Markdown: a row for each cause with its largest piece."""
+    count, noise = len(extraction.regions.regions), extraction.noise
+    causes = Counter(piece.cause for piece in extraction.rejected)
+    lines = [
+        f"{count} regions; {len(extraction.rejected)} rejected",
+        "",
+        f"noise at {_METRE:g} m: {1e3 * noise.own(_METRE):.1f} mm a pixel, "
+        f"{1e3 * noise.shared(_METRE):.1f} mm shared by neighbours",
+        "",
+        "| cause | pieces | the largest |",
+        "|---|---|---|",
+    ]
+    for cause, pieces in causes.most_common():
+        alike = [piece for piece in extraction.rejected if piece.cause == cause]
+        largest = max(alike, key=lambda piece: cv2.contourArea(piece.outline_image.astype(np.float32)))
+        lines.append(f"| {cause} | {pieces} | {largest.reason} |")
+    return "\n".join(lines)
+
+
+def _height_colors(heights: NDArray[np.float32], low: float, high: float) -> NDArray[np.uint8]:
+    """Blue is low and red is high, what is unknown is black, (rows, columns, 3) RGB."""
+    known = ~np.isnan(heights)
+    share = np.clip((np.where(known, heights, low) - low) / max(high - low, 1e-3), 0.0, 1.0)
+    bgr = cv2.applyColorMap((255.0 * share).astype(np.uint8), cv2.COLORMAP_TURBO)
+    return np.where(known[..., None], bgr[..., ::-1], np.uint8(0)).astype(np.uint8)
+
+
+def _scan_points(scan: LidarScan) -> NDArray[np.float32]:
+    """Where the beams of every nth ring and column ended, (N, 3) in the world [m]."""
+    step = slice(None, None, _SCAN_STRIDE)
+    elevation, azimuth = np.meshgrid(scan.lidar.elevations[step], scan.lidar.azimuths[step], indexing="ij")
+    along = np.stack((np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)), -1)
+    ranges = scan.ranges[step, step].astype(np.float64)
+    back = ranges > 0.0
+    return (scan.T_world_lidar @ (along[back] * ranges[back][:, None])).astype(np.float32)
