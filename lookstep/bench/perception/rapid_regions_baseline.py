@@ -42,7 +42,7 @@ class BaselineParameters:
     patch: int = 4
     span: int = 6
     blur: float = 1.5
-    link_angle: float = np.deg2rad(14.0)
+    link_angle: float = np.deg2rad(10.0)
     link_offset: float = 0.003
     link_distance: float = 10.0
     links_min: int = 3

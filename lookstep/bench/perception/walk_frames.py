@@ -64,8 +64,12 @@ class _Watcher:
         """Keep the moment, if it is one."""
         self.last = moment
         self._progress("walking the rough course", round(moment.time), round(self._duration))
-        image, scan = moment.world.depth_image(), moment.world.lidar_scan()
-        if image is None or scan is None or max(moment.time - image.time, moment.time - scan.time) > _TOGETHER:
+        # The lidar is the slower of the two: asking it first renders no image in vain.
+        scan = moment.world.lidar_scan()
+        if scan is None or moment.time - scan.time > _TOGETHER:
+            return
+        image = moment.world.depth_image()
+        if image is None or moment.time - image.time > _TOGETHER:
             return
         poses = moment.world.geom_poses()
         self.frames.append(
