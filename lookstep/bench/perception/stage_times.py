@@ -18,7 +18,7 @@ from lookstep.bench.subject import Progress
 from lookstep.bench.timing import Timing
 from lookstep.configuration import Configuration
 from skills.height_map import HeightMapper
-from skills.regions import RegionMemory, examine_regions
+from skills.regions import MapParameters, RegionMemory, examine_regions, remember
 from skills.regions.extraction import polygons_of
 from skills.regions.growing import grow_regions
 from skills.regions.patches import fit_patches
@@ -68,7 +68,8 @@ class StageTimes:
 def time_stages(walked: WalkFrames, configuration: Configuration, progress: Progress) -> StageTimes:
     """Send every frame of a walk through every stage, in the order of the walk."""
     times = StageTimes()
-    memory, mapper = RegionMemory(configuration.region_memory), HeightMapper(configuration.height_map)
+    memory, mapper = RegionMemory(), HeightMapper(configuration.height_map)
+    of_map = MapParameters.of(configuration.region_memory, configuration.registration, configuration.footsteps)
     threads = cv2.getNumThreads()
     cv2.setNumThreads(1)
     try:
@@ -83,8 +84,9 @@ def time_stages(walked: WalkFrames, configuration: Configuration, progress: Prog
             patches = times.timed("patches", fit_patches, image, parameters)
             coarse = times.timed("growing", grow_regions, patches, parameters)
             fine = times.timed("refinement", refine_regions, image, patches, coarse, parameters)
-            times.timed("polygons", polygons_of, image, fine.labels, fine.planes, fine.sigma, fine.bend, parameters)
-            times.timed("memory", memory.update, extraction.regions, frame.stance, image)
+            pieces = (fine.labels, fine.planes, fine.sigma, fine.bend, parameters, fine.noise)
+            times.timed("polygons", polygons_of, image, *pieces)
+            memory = times.timed("memory", remember, memory, extraction.regions, frame.stance, image, of_map)
             scan = times.timed("lidar", walked.lidar.capture, frame.lidar)
             times.timed("height_map", mapper.update, scan, frame.stance.mid_feet, walked.goal[:2])
     finally:
