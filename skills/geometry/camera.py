@@ -9,10 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from skills.geometry.capsule import Capsule
 from skills.geometry.pose import IDENTITY, Pose
+
+# The pose of a camera that looks straight down from the world's origin, the top of its image along x.
+LOOKING_DOWN = Pose(np.array([[0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]), np.zeros(3))
+_MILLIMETRES_PER_METRE = 1000.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +38,17 @@ class PinholeCamera:
     cy: float
     near: float = 0.1
     far: float = 9.0
+
+    def __post_init__(self) -> None:
+        if self.width < 1 or self.height < 1:
+            raise ValueError(f"got an image of {self.width} x {self.height} pixels, needs at least one")
+        for name in ("fx", "fy", "cx", "cy"):
+            value = getattr(self, name)
+            if not np.isfinite(value) or (value <= 0.0 and name in ("fx", "fy")):
+                needs = "a positive number" if name in ("fx", "fy") else "a number"
+                raise ValueError(f"{name}: got {value}, needs {needs} of pixels")
+        if not 0.0 <= self.near < self.far:
+            raise ValueError(f"near, far: got {self.near} and {self.far}, needs 0 <= near < far")
 
     def scaled(self, factor: float) -> PinholeCamera:
         """The same view at another resolution."""
@@ -70,6 +85,51 @@ class DepthImage:
         if self.depth.shape != expected or self.depth.dtype != np.float32:
             raise ValueError(f"got depth {self.depth.shape} {self.depth.dtype}, needs {expected} float32")
         self.depth.flags.writeable = False
+
+    @classmethod
+    def from_array(
+        cls,
+        values: ArrayLike,
+        camera: PinholeCamera,
+        *,
+        scale: float | None = None,
+        T_world_camera: Pose = LOOKING_DOWN,
+        time: float = 0.0,
+        frame_id: int = 0,
+    ) -> DepthImage:
+        """A depth image of what cameras and files deliver; what is no positive number becomes 0.
+
+        Args:
+            values: depth along the optical axis, (height, width), whole numbers or floats.
+            camera: intrinsics.
+            scale: values a metre, as 1000 for millimetres; without it whole numbers are millimetres, floats metres.
+            T_world_camera: camera pose; straight down at the world's origin where nobody says.
+            time: robot time of the frame [s].
+            frame_id: counts frames from 0.
+
+        Raises:
+            ValueError: where the shape, the type or the scale is none of a depth image.
+        """
+        array = np.asarray(values)
+        if array.ndim != 2:
+            raise ValueError(
+                f"got an array of shape {array.shape}, a depth image has one value a pixel: (height, width)"
+            )
+        if array.shape != (camera.height, camera.width):
+            raise ValueError(
+                f"got {array.shape[1]} x {array.shape[0]} pixels, the camera has {camera.width} x {camera.height}"
+            )
+        if array.dtype.kind not in "iuf" or (array.dtype.kind in "iu" and array.dtype.itemsize < 2):
+            raise ValueError(f"got values of type {array.dtype}, needs floats or whole numbers of 16 bits or more")
+        if scale is None:
+            scale = 1.0 if array.dtype.kind == "f" else _MILLIMETRES_PER_METRE
+        if not np.isfinite(scale) or scale <= 0.0:
+            raise ValueError(f"scale: got {scale}, needs a positive number of values a metre")
+        # Half floats overflow at 65504, and values beyond single precision are no depth either.
+        with np.errstate(over="ignore", invalid="ignore"):
+            depth = (array / np.float64(scale)).astype(np.float32)
+        depth[~((depth > 0.0) & np.isfinite(depth))] = 0.0
+        return cls(depth, camera, T_world_camera, time, frame_id)
 
     def moved(self, T: Pose) -> DepthImage:
         """The same image seen from another frame."""

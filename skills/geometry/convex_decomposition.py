@@ -208,7 +208,7 @@ def _best_cut(vertices: Array, piece: Indices, m: int, v: int) -> int:
         cost = _squared(vertices, piece[v], piece[j])
         # A cut outside the cone of the two prolonged edges leaves a notch at v.
         if turn(vertices, before, piece[v], piece[j]) < 0.0 or turn(vertices, piece[v], after, piece[j]) < 0.0:
-            cost *= 4.0
+            cost *= 16.0
         if turn(vertices, piece[(j - 1) % m], piece[j], piece[(j + 1) % m]) < 0.0:
             cost *= 0.25
         if cost < least and _in_sight(vertices, piece, m, v, j):
