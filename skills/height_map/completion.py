@@ -47,6 +47,7 @@ def complete(
         filled: written, likewise: cells that were holes.
         counts: cells removed and filled.
     """
+    known_heights, known_variances, seen = ring.height, ring.variance, ring.seen
     n = window.cells
     first_row, first_column = window.row % n, window.column % n
     known = np.empty((n, n), np.float32)
@@ -54,20 +55,29 @@ def complete(
         row = first_row + i if first_row + i < n else first_row + i - n
         for j in range(n):
             column = first_column + j if first_column + j < n else first_column + j - n
-            known[i, j] = ring.height[row, column]
-            variances[i * n + j] = ring.variance[row, column] + growth * (time - ring.seen[row, column])
+            known[i, j] = known_heights[row, column]
+            variances[i * n + j] = known_variances[row, column] + growth * (time - seen[row, column])
+    last_row = np.full(n, n + 2 * reach)
     for i in range(n):
+        last_column = n + 2 * reach
         for j in range(n):
-            cell = i * n + j
-            heights[cell] = known[i, j]
+            cell, height = i * n + j, known[i, j]
+            heights[cell] = height
             filled[cell] = False
-            if not np.isnan(known[i, j]):
+            # Most known cells have level neighbours on both sides; only the others are worth a closer look.
+            level = 0 < j < n - 1 and known[i, j - 1] >= height - spike and known[i, j + 1] >= height - spike
+            if not (level or np.isnan(height)):
                 heights[cell] = _without_spike(known, i, j, spike)
-                counts[SPIKES] += heights[cell] != known[i, j]
+                counts[SPIKES] += heights[cell] != height
             if np.isnan(heights[cell]):
                 variances[cell] = np.nan
-    _fill_lines(heights, variances, filled, n, n, 1, reach, step, counts)
-    _fill_lines(heights, variances, filled, n, 1, n, reach, step, counts)
+                continue
+            # Holes along x are closed before those along y, because a row is done before the next one begins.
+            if 1 < j - last_column <= 2 * reach:
+                counts[FILLED] += _fill(heights, variances, filled, cell, j - last_column, 1, reach, step)
+            if 1 < i - last_row[j] <= 2 * reach:
+                counts[FILLED] += _fill(heights, variances, filled, cell, i - last_row[j], n, reach, step)
+            last_column, last_row[j] = j, i
 
 
 @kernel
@@ -91,34 +101,29 @@ def _without_spike(known: NDArray[np.float32], i: int, j: int, spike: float) -> 
 
 
 @kernel
-def _fill_lines(
+def _fill(
     heights: NDArray[np.float32],
     variances: NDArray[np.float32],
     filled: NDArray[np.bool_],
-    n: int,
-    across: int,
-    along: int,
+    last: int,
+    steps: int,
+    stride: int,
     reach: int,
     step: float,
-    counts: NDArray[np.int64],
-) -> None:
-    """Fill the holes of n lines, `across` cells apart, of n cells, `along` cells apart."""
-    for line in range(n):
-        last = -1
-        for k in range(n):
-            cell = line * across + k * along
-            if np.isnan(heights[cell]) or filled[cell]:
-                continue
-            first = cell - (k - last) * along
-            if last >= 0 and 1 < k - last <= 2 * reach and abs(heights[cell] - heights[first]) <= step:
-                slope = (heights[cell] - heights[first]) / (k - last)
-                # The line between the sides may miss what is between them by half of their difference.
-                variance = max(variances[first], variances[cell]) + 0.25 * (heights[cell] - heights[first]) ** 2
-                for hole in range(max(last + 1, k - reach), min(k, last + reach + 1)):
-                    inner = line * across + hole * along
-                    if not filled[inner]:
-                        heights[inner] = heights[first] + slope * (hole - last)
-                        variances[inner] = variance
-                        filled[inner] = True
-                        counts[FILLED] += 1
-            last = k
+) -> int:
+    """Fill a hole between two known cells, `steps` cells of a `stride` apart, the second at `last`; how many cells."""
+    first = last - steps * stride
+    rise = heights[last] - heights[first]
+    if abs(rise) > step:
+        return 0
+    # The line between the sides may miss what is between them by half of their difference.
+    variance = max(variances[first], variances[last]) + 0.25 * rise * rise
+    count = 0
+    for k in range(max(1, steps - reach), min(steps, reach + 1)):
+        cell = first + k * stride
+        if np.isnan(heights[cell]):
+            heights[cell] = heights[first] + rise * k / steps
+            variances[cell] = variance
+            filled[cell] = True
+            count += 1
+    return count

@@ -59,7 +59,7 @@ class HeightMapParameters:
         meaning="scans in a row that contradict a height until it is given up",
     )
     check_every: int = parameter(
-        3, unit="1", minimum=1, maximum=10, meaning="a cell without returns is checked in one scan of so many"
+        4, unit="1", minimum=1, maximum=10, meaning="a cell without returns is checked in one scan of so many"
     )
     see_through: float = parameter(
         0.08, unit="m", minimum=0.01, maximum=1.0, meaning="beams this far below a height that go on contradict it"

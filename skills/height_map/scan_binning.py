@@ -87,35 +87,45 @@ def bin_returns(
     n = window.cells
     per_metre = 1.0 / window.resolution
     first_row, first_column = window.row % n, window.column % n
+    start_x, start_y = origin[0] * per_metre - window.column, origin[1] * per_metre - window.row
     reach = capsules[0, 0]
     for cell in range(n * n):
         tops[cell] = -np.inf
+    in_column, in_row, height = np.empty(columns), np.empty(columns), np.empty(columns)
+    across_x, across_y, across_z = np.empty(columns), np.empty(columns), np.empty(columns)
+    for azimuth in range(columns):
+        across_x[azimuth] = directions[rings + azimuth, 0] * per_metre
+        across_y[azimuth] = directions[rings + azimuth, 1] * per_metre
+        across_z[azimuth] = directions[rings + azimuth, 2]
     found = returns = outside = above = own_body = 0
     for ring in range(rings):
         cosine = cosines[ring]
-        up_x, up_y, up_z = directions[ring, 0], directions[ring, 1], directions[ring, 2]
+        up_x, up_y, up_z = directions[ring, 0] * per_metre, directions[ring, 1] * per_metre, directions[ring, 2]
+        # Without branches, so that the compiler takes several beams at once.
+        for azimuth in range(columns):
+            distance = ranges[ring, azimuth]
+            in_column[azimuth] = start_x + distance * (up_x + cosine * across_x[azimuth])
+            in_row[azimuth] = start_y + distance * (up_y + cosine * across_y[azimuth])
+            height[azimuth] = origin[2] + distance * (up_z + cosine * across_z[azimuth])
         for azimuth in range(columns):
             distance = ranges[ring, azimuth]
             if not (near <= distance <= far):
                 continue
             returns += 1
-            across = rings + azimuth
-            x = origin[0] + distance * (up_x + cosine * directions[across, 0])
-            y = origin[1] + distance * (up_y + cosine * directions[across, 1])
-            column = int(np.floor(x * per_metre)) - window.column
-            row = int(np.floor(y * per_metre)) - window.row
-            if column < 0 or column >= n or row < 0 or row >= n:
+            if not (0.0 <= in_column[azimuth] < n and 0.0 <= in_row[azimuth] < n):
                 outside += 1
                 continue
-            z = origin[2] + distance * (up_z + cosine * directions[across, 2])
+            z = np.float32(height[azimuth])
             if z > ceiling:
                 above += 1
                 continue
-            if distance < reach and _in_capsules(capsules, x, y, z):
-                own_body += 1
-                continue
-            row += first_row
-            column += first_column
+            if distance < reach:
+                x = (in_column[azimuth] + window.column) * window.resolution
+                y = (in_row[azimuth] + window.row) * window.resolution
+                if _in_capsules(capsules, x, y, z):
+                    own_body += 1
+                    continue
+            row, column = int(in_row[azimuth]) + first_row, int(in_column[azimuth]) + first_column
             cell = (row if row < n else row - n) * n + (column if column < n else column - n)
             cells[found] = cell
             heights[found] = z
