@@ -42,14 +42,14 @@ class HeightMapParameters:
         1e-5, unit="m^2/s", minimum=0.0, maximum=1.0, meaning="variance that a height gains while nothing confirms it"
     )
     surface: float = parameter(
-        0.03,
+        0.08,
         unit="m",
         minimum=0.0,
         maximum=0.5,
         meaning="returns this far below the highest of a cell are its top too",
     )
     gate: float = parameter(
-        2.5, unit="1", minimum=0.5, maximum=10.0, meaning="standard deviations within which a return confirms a height"
+        3.0, unit="1", minimum=0.5, maximum=10.0, meaning="standard deviations within which a return confirms a height"
     )
     votes: int = parameter(
         6,

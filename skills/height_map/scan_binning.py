@@ -122,7 +122,7 @@ def bin_returns(
             if distance < reach:
                 x = (in_column[azimuth] + window.column) * window.resolution
                 y = (in_row[azimuth] + window.row) * window.resolution
-                if _in_capsules(capsules, x, y, z):
+                if _in_capsules(capsules, x, y, height[azimuth]):
                     own_body += 1
                     continue
             row, column = int(in_row[azimuth]) + first_row, int(in_column[azimuth]) + first_column

@@ -220,3 +220,13 @@ def test_the_ground_is_the_low_part_of_the_map_but_not_its_lowest():
     blocks = [block(x, y, 0.3) for x in np.arange(0.6, 2.6, 0.5) for y in np.arange(-2.0, 2.0, 0.5)]
     found = HeightMapper(COARSE).update(scan_of([*blocks, pit], noise=0.005), FEET)
     assert abs(found.ground_height) < 0.01
+
+
+def test_noise_of_the_lidar_averages_out_and_the_highest_returns_do_not_lift_the_map():
+    scans = [scan_of([block(1.5, 0.0, 0.3, 0.8)], time=0.1 * k, noise=0.02, seed=k) for k in range(20)]
+    found = after(HeightMapper(), scans)
+    for (x, y), height in (((1.5, 0.0), 0.3), ((1.5, 1.2), 0.0)):
+        points = np.stack(np.meshgrid(np.linspace(x - 0.3, x + 0.3, 13), np.linspace(y - 0.3, y + 0.3, 13)), axis=-1)
+        errors = found.nearest(points) - height
+        assert abs(np.median(errors)) < 0.003
+        assert np.percentile(np.abs(errors), 90) < 0.015, "a quarter of the beams of a large lidar hits these cells"
