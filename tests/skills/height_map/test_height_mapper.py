@@ -229,4 +229,4 @@ def test_noise_of_the_lidar_averages_out_and_the_highest_returns_do_not_lift_the
         points = np.stack(np.meshgrid(np.linspace(x - 0.3, x + 0.3, 13), np.linspace(y - 0.3, y + 0.3, 13)), axis=-1)
         errors = found.nearest(points) - height
         assert abs(np.median(errors)) < 0.003
-        assert np.percentile(np.abs(errors), 90) < 0.015, "a quarter of the beams of a large lidar hits these cells"
+        assert np.percentile(np.abs(errors), 90) < 0.02, "better than one return, although few beams hit a cell"
