@@ -29,7 +29,6 @@ class MemoryParameters:
         0.98, unit="1", minimum=0.0, maximum=1.0, meaning="an old region covered this far by newer ones is dropped"
     )
     regions_max: int = parameter(150, unit="1", minimum=1, maximum=10000, meaning="the oldest beyond this are dropped")
-    cell: float = parameter(0.025, unit="m", minimum=0.005, maximum=0.1, meaning="edge of the cells for comparing")
     start_support: float = parameter(
         3.0, unit="1", minimum=1.0, maximum=5.0, meaning="assumed ground around the soles at the start, in soles"
     )

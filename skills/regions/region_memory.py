@@ -18,23 +18,14 @@ import numpy as np
 
 from skills.footsteps.footstep import Side, Stance
 from skills.geometry.camera import DepthImage
-from skills.geometry.polygon import contains_points
 from skills.geometry.pose import IDENTITY, Pose
-from skills.regions.height_grid import Cells, Comparison, HeightGrid, cells_of
+from skills.regions.forgetting import REASONS, judge_regions
 from skills.regions.height_reference import HeightReference, updated
 from skills.regions.memory_parameters import MemoryParameters
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
+from skills.regions.region_cells import Cells, Window, cells_of, hold
 from skills.regions.registration import Drift, register
 from skills.regions.registration_parameters import RegistrationParameters
-
-EXPIRED, FAR, COVERED, CHANGED, VANISHED, TOO_MANY = (
-    "too old",
-    "too far",
-    "covered by newer ones",
-    "seen differently",
-    "seen through",
-    "too many",
-)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -168,57 +159,37 @@ class _Frame:
 
     def joined(self, drift: Drift) -> RegionMemory:
         """The map with this frame in it."""
-        now, cell = self._regions.time, self._parameters.cell
-        newest = tuple(Remembered(region, cells_of(region, cell)) for region in self._regions.regions)
+        now, registration = self._regions.time, self._all_parameters.registration
+        newest = cells_of(self._regions.regions, registration.cell)
         kept, forgotten = self._remember(newest)
-        known = tuple(remembered.region for remembered in (*kept, *newest))
-        unseen = [side for side in Side if not self._stands_on(self._stance.sole(side), known)]
+        known = (*(remembered.region for remembered in kept), *self._regions.regions)
+        unseen = self._unseen(Cells.joined([*(remembered.cells for remembered in kept), newest]))
         supports = tuple(self._support(side, now) for side in unseen)
         ground = PlanarRegions((*supports, *known), now, self._regions.frame_id)
         change = GroundUpdate(forgotten, drift, self._image.T_world_odometry)
         memory = replace(self._memory, ground=ground, update=change, kept=kept, start=self._start)
         if not self._is_key:
             return memory
-        T_world_camera, registration = self._image.T_world_camera, self._all_parameters.registration
-        reference = updated(self._memory.reference, self._regions, T_world_camera, registration)
-        return replace(memory, kept=(*kept, *newest), T_world_key=T_world_camera, reference=reference)
+        T_world_camera = self._image.T_world_camera
+        fresh = tuple(Remembered(region, newest.of(i)) for i, region in enumerate(self._regions.regions))
+        reference = updated(self._memory.reference, newest, T_world_camera.p, registration)
+        return replace(memory, kept=(*kept, *fresh), T_world_key=T_world_camera, reference=reference)
 
-    def _remember(self, newest: tuple[Remembered, ...]) -> tuple[tuple[Remembered, ...], tuple[Forgotten, ...]]:
+    def _remember(self, newest: Cells) -> tuple[tuple[Remembered, ...], tuple[Forgotten, ...]]:
         """The old regions that still hold, and the others."""
-        parameters, old = self._parameters, self._memory.kept
-        grid = HeightGrid(self._stance.mid_feet, parameters.radius, parameters.cell)
-        for remembered in newest:
-            grid.paint(remembered.cells)
-        grid.freeze()
-        vanished = _seen_through([remembered.cells for remembered in old], self._image, parameters.same_height)
-        kept: list[Remembered] = []
-        forgotten: list[Forgotten] = []
-        for remembered, gone in zip(reversed(old), reversed(vanished), strict=True):
-            comparison = grid.compare(remembered.cells, parameters.same_height)
-            reason = self._reason_to_forget(remembered.region, comparison, gone)
-            if not reason and len(kept) + len(newest) >= parameters.regions_max:
-                reason = TOO_MANY
-            if reason:
-                forgotten.append(Forgotten(remembered.region, reason))
-            else:
-                kept.append(remembered)
-                grid.paint(remembered.cells)
-        return tuple(reversed(kept)), tuple(forgotten)
-
-    def _reason_to_forget(self, region: PlanarRegion, cells: Comparison, gone: bool) -> str:
-        parameters = self._parameters
-        if self._regions.time - region.time > parameters.age_max:
-            return EXPIRED
-        if cells.inside == 0:
-            return FAR
-        if cells.seen >= parameters.changed_share * cells.inside and cells.differing > 0.5 * cells.seen:
-            return CHANGED
-        if gone:
-            return VANISHED
-        # A frame that will not be kept replaces nothing: the next one may see less.
-        if self._is_key and cells.covered >= parameters.covered_share * cells.inside:
-            return COVERED
-        return ""
+        old, cell = self._memory.kept, self._all_parameters.registration.cell
+        reasons = judge_regions(
+            Cells.joined([remembered.cells for remembered in old]),
+            newest,
+            np.array([self._regions.time - remembered.region.time for remembered in old]),
+            self._image,
+            Window.around(self._stance.mid_feet, self._parameters.radius, cell),
+            self._is_key,
+            self._parameters,
+        )
+        judged = tuple(zip(old, reasons, strict=True))
+        forgotten = tuple(Forgotten(remembered.region, REASONS[reason]) for remembered, reason in judged if reason)
+        return tuple(remembered for remembered, reason in judged if not reason), forgotten
 
     def _moved_on(self, T_world_camera: Pose) -> bool:
         """Whether the camera has moved since the last frame that was kept."""
@@ -229,17 +200,12 @@ class _Frame:
         moved = np.linalg.norm(T_key_camera.p) >= self._parameters.key_distance
         return bool(moved or angle >= self._parameters.key_angle)
 
-    def _stands_on(self, T_world_sole: Pose, known: tuple[PlanarRegion, ...]) -> bool:
-        """Whether known ground is under the middle, toe, heel and sides of a sole."""
-        probes = np.array([(0, 0, 0), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)])
-        points = T_world_sole @ (0.4 * probes * (*self._sole, 0.0))
-        found = np.zeros(len(points), dtype=bool)
-        for region in known:
-            points_region = region.T_world_region.inverse @ points
-            near = np.abs(points_region[:, 2]) <= self._parameters.same_height
-            if near.any():
-                found |= near & contains_points(region.hull_region, np.ascontiguousarray(points_region[:, :2]))
-        return bool(found.all())
+    def _unseen(self, known: Cells) -> list[Side]:
+        """The feet that have no known ground under the middle, toe, heel and sides of the sole."""
+        probes = np.array([(0, 0, 0), (1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0)]) * (*self._sole, 0.0)
+        points = np.concatenate([self._stance.sole(side) @ (0.4 * probes) for side in Side])
+        found = hold(known, points, self._all_parameters.registration.cell, self._parameters.same_height)
+        return [side for side, on in zip(Side, found.reshape(2, -1), strict=True) if not on.all()]
 
     def _support(self, side: Side, time: float) -> PlanarRegion:
         """Ground assumed under a sole, and around it while the foot stands where it stood at the start."""
@@ -259,22 +225,3 @@ class Remembered(NamedTuple):
 
     region: PlanarRegion
     cells: Cells
-
-
-def _seen_through(old: list[Cells], image: DepthImage, same_height: float) -> list[bool]:
-    """For each old region, whether the newest image shows something clearly behind most of it."""
-    if not old:
-        return []
-    camera = image.camera
-    counts = np.array([len(cells.probes_world) for cells in old])
-    points = image.T_world_camera.inverse @ np.concatenate([cells.probes_world for cells in old])
-    ahead = np.maximum(points[:, 2], camera.near)
-    u = np.round(points[:, 0] / ahead * camera.fx + camera.cx).astype(int)
-    v = np.round(points[:, 1] / ahead * camera.fy + camera.cy).astype(int)
-    in_view = (points[:, 2] > camera.near) & (u >= 0) & (u < camera.width) & (v >= 0) & (v < camera.height)
-    measured = np.where(in_view, image.depth[np.where(in_view, v, 0), np.where(in_view, u, 0)], 0.0)
-    # Where the old surface is seen at a slant, its error in height shows as a larger one in depth.
-    behind = measured > points[:, 2] + 2.0 * same_height
-    starts = np.concatenate(([0], np.cumsum(counts)[:-1]))
-    seen, gone = (np.add.reduceat(flags.astype(int), starts) for flags in (measured > 0.0, behind))
-    return (gone > np.maximum(0.5 * seen, 0.25 * counts)).tolist()

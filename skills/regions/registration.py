@@ -17,14 +17,15 @@ import numpy as np
 from skills.geometry.camera import DepthImage
 from skills.geometry.pose import IDENTITY, Array, Pose, readonly, rotation_z
 from skills.kernels import kernel
-from skills.regions.height_reference import T_RASTER_WORLD, HeightReference
+from skills.regions.height_reference import HeightReference
 from skills.regions.planar_region import PlanarRegions
-from skills.regions.region_raster import Raster, Window, paint_regions
+from skills.regions.region_cells import T_RASTER_WORLD, Raster, Window, cells_of
 from skills.regions.registration_parameters import RegistrationParameters
 
-# Of each level: width of the blur [m], residual at which the weight is a quarter [m], iterations.
-_LEVELS = ((0.08, 0.10, 6), (0.04, 0.04, 6), (0.02, 0.02, 6))
-_CONVERGED = 1e-4  # [m] and [rad]
+# Of each level: width of the blur [m], residual at which the weight is a quarter [m], cells from one to the next that
+# is compared, and the change [m, rad] below which the next level takes over.
+_LEVELS = ((0.08, 0.10, 2, 2e-3), (0.04, 0.04, 2, 5e-4), (0.02, 0.02, 1, 1e-4))
+_ITERATIONS = 6
 # A blurred cell is used where this share of its surroundings is known, about as much in both rasters.
 _KNOWN_MIN, _KNOWN_CHANGE = 0.4, 0.15
 _CELLS_MIN = 100
@@ -78,8 +79,8 @@ def register(
     dt = image.time - before.time
     predicted = before.rate * dt
     window = _window_of(regions, image, parameters)
-    newest = paint_regions(regions.regions, T_RASTER_WORLD, window)
-    found, overlap, reason = _fit(newest, reference.cut(window), window, predicted, parameters)
+    newest, known = window.paint(cells_of(regions.regions, parameters.cell)), reference.cut(window)
+    found, overlap, reason = _fit(newest, known, window, predicted, parameters)
     if reason:
         rate = before.rate * np.exp(-dt / parameters.rate_memory)
         return Drift(_as_pose(predicted, window), predicted, rate, image.time, overlap, reason)
@@ -110,18 +111,18 @@ def _fit(
     shift_turn, A, b = predicted, np.empty((4, 4)), np.empty(4)
     prior = parameters.prior * np.array((1.0, 1.0, 1.0, parameters.prior_turn))
     overlap = 0.0
-    for width, scale, iterations in _LEVELS:
+    for width, scale, stride, converged in _LEVELS:
         rasters = (*_blurred(newest, width / window.cell), *_blurred(known, width / window.cell))
-        for _ in range(iterations):
-            compared, painted, weight, _ = _sum_up(*rasters, window.cell, shift_turn, scale, A, b)
+        for _ in range(_ITERATIONS):
+            compared, painted, weight, _ = _sum_up(*rasters, window.cell, stride, shift_turn, scale, A, b)
             overlap = compared / max(painted, 1.0)
-            if compared < _CELLS_MIN or overlap <= parameters.overlap_min:
+            if compared * stride**2 < _CELLS_MIN or overlap <= parameters.overlap_min:
                 return predicted, overlap, "too little of the ground in view was known before"
             surprise = shift_turn - predicted
             stiff = weight * (prior * _trust(surprise, parameters) + _PRIOR_MIN)
             change = -np.linalg.solve(A + np.diag(stiff), b + stiff * surprise)
             shift_turn = shift_turn + change
-            if np.abs(change).max() < _CONVERGED:
+            if np.abs(change).max() < converged:
                 break
     if np.linalg.norm(shift_turn[:3]) > parameters.shift_max or abs(shift_turn[3]) > parameters.turn_max:
         return predicted, overlap, "the ground in view seems to have moved further than an estimate drifts"
@@ -136,7 +137,8 @@ def _trust(surprise: Array, parameters: RegistrationParameters) -> Array:
 
 def _blurred(raster: tuple[Raster, Raster], width: float) -> tuple[Raster, Raster]:
     """Mean of the known heights around each cell, and how much of its surroundings is known; width in cells."""
-    heights, mask = raster
+    heights, counts = raster
+    mask = np.minimum(counts, np.float32(1.0))
     known = cv2.GaussianBlur(mask, (0, 0), width)
     return cv2.GaussianBlur(heights * mask, (0, 0), width) / np.maximum(known, np.float32(1e-6)), known
 
@@ -157,6 +159,7 @@ def _sum_up(
     reference: Raster,
     reference_known: Raster,
     cell: float,
+    stride: int,
     shift_turn: Array,
     scale: float,
     A: Array,
@@ -170,8 +173,8 @@ def _sum_up(
     compared, painted, weights, cost = 0.0, 0.0, 0.0, 0.0
     cos, sin = np.cos(shift_turn[3]), np.sin(shift_turn[3])
     middle_x, middle_y = 0.5 * nx * cell, 0.5 * ny * cell
-    for row in range(1, ny - 1):
-        for column in range(1, nx - 1):
+    for row in range(1, ny - 1, stride):
+        for column in range(1, nx - 1, stride):
             known = newest_known[row, column]
             if known < _KNOWN_MIN:
                 continue

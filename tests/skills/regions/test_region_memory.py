@@ -22,10 +22,12 @@ SOLE_LENGTH, SOLE_WIDTH = 0.26, 0.138
 
 
 class Map:
-    """A map whose frames are taken as they come: nothing drifts."""
+    """A map whose frames are taken as they come, unless it is told to look for drift."""
 
-    def __init__(self, memory: MemoryParameters | None = None) -> None:
-        still = RegistrationParameters(overlap_min=1.0)
+    def __init__(
+        self, memory: MemoryParameters | None = None, registration: RegistrationParameters | None = None
+    ) -> None:
+        still = registration or RegistrationParameters(overlap_min=1.0)
         self._parameters = MapParameters(memory or MemoryParameters(), still, SOLE_LENGTH, SOLE_WIDTH)
         self._memory = RegionMemory()
 
@@ -132,6 +134,34 @@ def test_a_block_that_the_camera_now_sees_through_is_forgotten():
     known = memory.update(PlanarRegions((), 1.0, 1), stance(0.0), image)
     assert dict(memory.dropped)["seen through"] == 1
     assert newest_height(known, 0.8, 0.0) == pytest.approx(0.0, abs=0.01)
+
+
+@pytest.mark.parametrize("drift", [RegistrationParameters(overlap_min=1.0), RegistrationParameters()])
+def test_blocks_that_vanish_over_a_pit_appear_or_move_are_so_in_the_map_within_three_frames(drift):
+    pad = block(-0.3, 0.0, 0.0, size=(1.4, 1.4, 0.6))
+    rows = [block(0.6 + 0.4 * k, y, 0.05 * k, size=(0.38, 0.38, 0.6)) for k in range(4) for y in (-0.4, 0.0, 0.4)]
+    vanishing, moving, appearing = rows[4], rows[6], block(1.0, 0.4, 0.2, size=(0.38, 0.38, 0.6))
+    memory, frame_id = Map(registration=drift), 0
+    after = [box for box in rows if box not in (vanishing, moving)]
+    after += [appearing, block(1.35, -0.4, 0.2, size=(0.38, 0.38, 0.6))]
+    known = frame(0.0)
+    for boxes, frames in ((rows, 4), (after, 3)):
+        for _ in range(frames):
+            image = look([pad, *boxes], camera_pose(0.0), CAMERA, time=0.1 * frame_id, frame_id=frame_id).image
+            known = memory.update(extract_regions(image), stance(-0.2), image)
+            frame_id += 1
+    assert np.isnan(newest_height(known, 1.0, 0.0)), "nothing is left over the pit"
+    assert newest_height(known, 1.0, 0.4) == pytest.approx(0.2, abs=0.01)
+    assert newest_height(known, 1.35, -0.4) == pytest.approx(0.2, abs=0.01)
+    for x in (0.6, 1.8):
+        assert newest_height(known, x, 0.0) == pytest.approx(0.125 * (x - 0.6), abs=0.01), "the rest stays as it was"
+
+
+def test_a_camera_that_sees_nothing_makes_nothing_vanish():
+    memory = Map()
+    memory.update(frame(0.0, pad(1.0, 0.0, 0.0)), stance(0.0), blind(0.0))
+    memory.update(frame(0.1), stance(0.0), blind(0.0))
+    assert memory.dropped == ()
 
 
 def test_ground_that_is_only_hidden_is_remembered():
