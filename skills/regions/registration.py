@@ -139,8 +139,9 @@ def _blurred(raster: tuple[Raster, Raster], width: float) -> tuple[Raster, Raste
     """Mean of the known heights around each cell, and how much of its surroundings is known; width in cells."""
     heights, counts = raster
     mask = np.minimum(counts, np.float32(1.0))
-    known = cv2.GaussianBlur(mask, (0, 0), width)
-    return cv2.GaussianBlur(heights * mask, (0, 0), width) / np.maximum(known, np.float32(1e-6)), known
+    known = np.asarray(cv2.GaussianBlur(mask, (0, 0), width), np.float32)
+    heights = np.asarray(cv2.GaussianBlur(heights * mask, (0, 0), width), np.float32)
+    return heights / np.maximum(known, np.float32(1e-6)), known
 
 
 def _as_pose(shift_turn: Array, window: Window) -> Pose:
