@@ -139,9 +139,9 @@ def _blurred(raster: tuple[Raster, Raster], width: float) -> tuple[Raster, Raste
     """Mean of the known heights around each cell, and how much of its surroundings is known; width in cells."""
     heights, counts = raster
     mask = np.minimum(counts, np.float32(1.0))
-    known = np.asarray(cv2.GaussianBlur(mask, (0, 0), width), np.float32)
-    heights = np.asarray(cv2.GaussianBlur(heights * mask, (0, 0), width), np.float32)
-    return heights / np.maximum(known, np.float32(1e-6)), known
+    known = cv2.GaussianBlur(mask, (0, 0), width)
+    heights = cv2.GaussianBlur(heights * mask, (0, 0), width) / np.maximum(known, np.float32(1e-6))
+    return np.asarray(heights, np.float32), np.asarray(known, np.float32)
 
 
 def _as_pose(shift_turn: Array, window: Window) -> Pose:
