@@ -18,6 +18,7 @@ from skills.geometry.pose import Array, readonly
 from skills.regions.growing import grow_regions
 from skills.regions.noise_level import NoiseLevel
 from skills.regions.outline import trace_outlines
+from skills.regions.own_body import without_body
 from skills.regions.parameters import RegionParameters
 from skills.regions.patches import fit_patches, patch_size
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
@@ -89,9 +90,10 @@ def extract_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PA
 
 def examine_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PARAMETERS) -> RegionExtraction:
     """The same as `extract_regions`, with labels and with what was rejected and why."""
-    patches = fit_patches(image, parameters)
+    seen = without_body(image)
+    patches = fit_patches(seen, parameters)
     coarse = grow_regions(patches, parameters)
-    fine = refine_regions(image, patches, coarse, parameters)
+    fine = refine_regions(seen, patches, coarse, parameters)
     regions, region_labels, rejected = polygons_of(
         image, fine.labels, fine.planes, fine.sigma, fine.bend, parameters, fine.noise
     )

@@ -18,6 +18,7 @@ from skills.kernels import kernel
 from skills.regions.noise_level import depth_noise
 from skills.regions.parameters import RegionParameters
 from skills.regions.patches import SUMS, Patches, fit_plane, misfit, off_plane
+from skills.regions.splitting import split_regions
 
 Labels = NDArray[np.int32]
 
@@ -29,12 +30,10 @@ class PatchRegions:
     Attributes:
         labels: index into planes for each patch, (rows, columns) int32; -1 for none.
         planes: plane of each region, (R, 3) [1/m], as in `Patches`.
-        sigma: spread of each region's pixels about its plane, (R,) [m].
     """
 
     labels: Labels
     planes: Array
-    sigma: Array
 
 
 def grow_regions(patches: Patches, parameters: RegionParameters) -> PatchRegions:
@@ -42,18 +41,15 @@ def grow_regions(patches: Patches, parameters: RegionParameters) -> PatchRegions
     p, pixels = parameters, patches.size**2
     labels = np.full(patches.sigma.shape, -1, dtype=np.int32)
     order = np.argsort(patches.sigma, axis=None, kind="stable")[: np.count_nonzero(np.isfinite(patches.sigma))]
-    capacity = len(order) // p.patches_min + 1
+    capacity = labels.size // p.patches_min + 1
     sums, planes = np.zeros((capacity, SUMS)), np.zeros((capacity, 3))
     limits = np.array((p.link_angle, p.link_offset, p.grow_angle, p.grow_offset))
     count = _grow(patches.sums, patches.facets, order, limits, p.patches_min, labels, sums, planes)
-    if count == 0:
-        return PatchRegions(labels, np.zeros((0, 3)), np.zeros(0))
     _fill(patches.sums, patches.facets, planes, p.fill_offset, labels)
-    parents = _merge(labels, count, p.merge_offset, p.noise_factor, patches.noise.law, pixels, sums, planes)
-    roots, renumbered = np.unique(parents, return_inverse=True)
-    lookup = np.append(renumbered, -1).astype(np.int32)
-    sigma = np.array([fit_plane(sums[root], planes[root]) for root in roots])
-    return PatchRegions(lookup[labels], planes[roots], sigma)
+    merging = (p.merge_offset, p.noise_factor)
+    count = _merge(labels, count, *merging, patches.noise.law, pixels, sums, planes)
+    count = split_regions(patches.sums, patches.facets, labels, count, *merging, p.patches_min, sums, planes)
+    return PatchRegions(labels, planes[:count])
 
 
 @kernel
@@ -198,8 +194,8 @@ def _merge(
     pixels: float,
     sums: Array,
     planes: Array,
-) -> NDArray[np.int32]:
-    """Join regions at most two patches apart until none fits another; which region each one has become."""
+) -> int:
+    """Join regions at most two patches apart until none fits another; the number of regions afterwards."""
     rows, columns = labels.shape
     parents = np.empty(count, np.int32)
     touching = np.zeros((count, count), np.uint8)
@@ -241,4 +237,18 @@ def _merge(
                     if k != p and touching[min(k, q), max(k, q)]:
                         touching[min(k, p), max(k, p)] = 1
                 merged = True
-    return parents
+    kept = 0
+    numbers = np.empty(count, np.int32)
+    for p in range(count):
+        if parents[p] == p:
+            numbers[p] = kept
+            for k in range(10):
+                sums[kept, k] = sums[p, k]
+            for k in range(3):
+                planes[kept, k] = planes[p, k]
+            kept += 1
+    for row in range(rows):
+        for column in range(columns):
+            if labels[row, column] >= 0:
+                labels[row, column] = numbers[parents[labels[row, column]]]
+    return kept

@@ -55,7 +55,7 @@ class Patches:
 
 
 def fit_patches(image: DepthImage, parameters: RegionParameters, noise: NoiseLevel | None = None) -> Patches:
-    """Fit a plane to every patch of a depth image; patches on the robot's own body get none.
+    """Fit a plane to every patch of a depth image.
 
     Args:
         image: the depth image.
@@ -66,8 +66,6 @@ def fit_patches(image: DepthImage, parameters: RegionParameters, noise: NoiseLev
     size = patch_size(camera, parameters)
     sums = np.zeros((-(-camera.height // size), -(-camera.width // size), SUMS))
     _sum_patches(image.depth, intrinsics(camera), camera.near, min(camera.far, parameters.depth_max), size, sums)
-    if image.body_world:
-        _drop_body(sums, _capsules_in_camera(image))
     edge = float(size / np.sqrt(camera.fx * camera.fy))
     nothing = np.empty((0, 0, 0))
     patches = Patches(size, edge, sums, nothing, nothing, noise or estimate_noise(sums, size**2))
@@ -82,13 +80,6 @@ def fit_facets(patches: Patches, sums: Array, parameters: RegionParameters) -> P
     limits = np.array((parameters.noise_factor, parameters.pixel_offset, parameters.grow_offset))
     _fit_facets(sums, patches.noise.law, patches.size**2, patches.edge, limits, facets, sigma)
     return replace(patches, sums=sums, facets=facets, sigma=sigma)
-
-
-def _capsules_in_camera(image: DepthImage) -> Array:
-    """The robot's body as rows of two ends in the camera frame and a radius, (K, 7) [m]."""
-    T_camera_world = image.T_world_camera.inverse
-    rows = [(*(T_camera_world @ c.start_world), *(T_camera_world @ c.end_world), c.radius) for c in image.body_world]
-    return np.array(rows)
 
 
 def patch_size(camera: PinholeCamera, parameters: RegionParameters) -> int:
@@ -187,28 +178,6 @@ def add_lanes(
     sums[7] += x0 * d + dx * jd + reference * x
     sums[8] += y0 * d + dy * id1 + reference * y
     sums[9] += dd + reference * (2.0 * d + reference * n)
-
-
-@kernel
-def _drop_body(sums: Array, capsules: Array) -> None:
-    """Empty every patch whose mean point is inside a capsule."""
-    for row in range(sums.shape[0]):
-        for column in range(sums.shape[1]):
-            s = sums[row, column]
-            if s[0] == 0.0:
-                continue
-            z = s[0] / s[3]
-            x, y = s[1] / s[0] * z, s[2] / s[0] * z
-            for k in range(capsules.shape[0]):
-                c = capsules[k]
-                ux, uy, uz = c[3] - c[0], c[4] - c[1], c[5] - c[2]
-                px, py, pz = x - c[0], y - c[1], z - c[2]
-                along = ux * px + uy * py + uz * pz
-                t = min(max(along / max(ux * ux + uy * uy + uz * uz, 1e-12), 0.0), 1.0)
-                if (px - t * ux) ** 2 + (py - t * uy) ** 2 + (pz - t * uz) ** 2 < c[6] * c[6]:
-                    for m in range(10):
-                        s[m] = 0.0
-                    break
 
 
 @kernel

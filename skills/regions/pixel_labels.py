@@ -20,6 +20,7 @@ PixelLabels = NDArray[np.int16]
 LANES = 16  # pixels of a row that are worked on at a time
 RADIUS = 2  # of the window about a pixel [px]; its sums are written out for five columns and rows
 _VALID_MIN = 4.5  # a window with fewer valid pixels gives no label
+_BARE = 0.6  # share of the cap above which no plane fits; pixels at a slanted edge see up to 0.56 of the other side
 
 
 @kernel
@@ -161,7 +162,7 @@ def _misfits(limits: Array, depth: float) -> tuple[np.float32, np.float32, np.fl
     spread = 1.0 + factor * np.sqrt(2.0) / (2 * RADIUS + 1)  # of a mean of squares over a window
     odd = offset * offset + spread * (pixel * pixel - shared * shared) + (factor * shared) ** 2
     scale = 1.0 / (depth * depth)
-    return np.float32(cap * scale), np.float32(0.5 * cap * scale), np.float32(odd * scale)
+    return np.float32(cap * scale), np.float32(_BARE * cap * scale), np.float32(odd * scale)
 
 
 @kernel
