@@ -156,7 +156,7 @@ def _table(title: str, names: Sequence[str], columns: Sequence[str], caption: st
     # As Text, because a unit in brackets would be taken for markup.
     table = Table(
         title=Text(title), caption=Text(caption), title_justify="left", caption_justify="left",
-        box=SIMPLE, pad_edge=False,
+        box=SIMPLE, pad_edge=False, collapse_padding=True,
     )  # fmt: skip
     for name in names:
         table.add_column(Text(name), no_wrap=True)
