@@ -20,7 +20,7 @@ PixelLabels = NDArray[np.int16]
 LANES = 16  # pixels of a row that are worked on at a time
 RADIUS = 2  # of the window about a pixel [px]; its sums are written out for five columns and rows
 _VALID_MIN = 4.5  # a window with fewer valid pixels gives no label
-_BARE = 0.6  # share of the cap above which no plane fits; pixels at a slanted edge see up to 0.56 of the other side
+_BARE = 0.5  # share of the cap above which no plane fits: most of the window is elsewhere
 
 
 @kernel
