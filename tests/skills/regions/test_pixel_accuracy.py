@@ -61,8 +61,8 @@ def test_of_a_block_only_a_few_pixels_at_its_border_are_wrong():
     found = segment(white(view.image, 0.002)).labels
     mine = found == np.bincount(found[top & (found >= 0)]).argmax()
     border = np.count_nonzero(top ^ cv2.erode(top.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool))
-    assert np.count_nonzero(top & ~mine) < 0.1 * border
-    assert np.count_nonzero(mine & ~top) < 0.3 * border
+    assert np.count_nonzero(top & ~mine) < 0.2 * border
+    assert np.count_nonzero(mine & ~top) < 0.1 * border
 
 
 def test_a_crease_of_15_degrees_runs_where_the_planes_meet():
