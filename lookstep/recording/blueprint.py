@@ -7,8 +7,8 @@ import rerun.blueprint as rrb
 TIMELINE = "robot_time"
 
 
-def default_blueprint(start: tuple[float, float], goal: tuple[float, float]) -> rrb.Blueprint:
-    """The layout for a walk from start to goal, both (x, y) in the world [m]."""
+def default_blueprint(start: tuple[float, float]) -> rrb.Blueprint:
+    """The layout for a walk that starts at (x, y) in the world [m]."""
     scene = _scene(
         "Walk",
         ["/world/**", "- /world/around/**"],
@@ -24,8 +24,9 @@ def default_blueprint(start: tuple[float, float], goal: tuple[float, float]) -> 
         ["/world/around/**", "/world/robot/**", "/world/path", "/world/goal"],
         rrb.EyeControls3D(
             kind=rrb.components.Eye3DKind.Orbital,
-            position=(start[0] - 5.0, start[1] - 5.0, 6.0),
-            look_target=(0.5 * (start[0] + goal[0]), 0.5 * (start[1] + goal[1]), 0.0),
+            position=(start[0] - 2.0, start[1] - 3.0, 3.0),
+            look_target=(start[0] + 1.0, start[1], 0.3),
+            tracking_entity="/world/robot/pelvis",
         ),
     )
     tree = rrb.StateTimelineView(name="Behavior tree", origin="/tree")

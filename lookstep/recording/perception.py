@@ -9,6 +9,7 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from lookstep.perception_pictures import colored, height_picture
 from lookstep.recording import palette, scene
 from lookstep.recording.columns import Columns
 from lookstep.recording.images import encoded_depth, encoded_drawing, encoded_picture, pinhole_of
@@ -19,8 +20,6 @@ from skills.regions import GroundUpdate, RegionExtraction, debug_image
 _PICTURE_WIDTH = 640
 _METRE = 1.0  # noise is told at this depth [m]
 _SCAN_STRIDE = 4  # every nth ring and column of a scan is kept
-_MAP_STRIDE = 2  # every nth row and column of cells is kept in 3D
-_CELL_PIXELS = 2
 _UPDATE_PERIOD = 1.0
 _SHOWN_REASONS = ("seen differently", "seen through")  # the others are everyday
 
@@ -78,20 +77,13 @@ class PerceptionViews:
 
     def log_heights(self, heights: HeightMap, scan: LidarScan | None) -> None:
         """The height map as a picture and as points, and the scan."""
-        known = heights.heights[~np.isnan(heights.heights)]
-        if not len(known):
+        known = ~np.isnan(heights.heights)
+        if not known.any():
             return
-        low, high = (float(value) for value in np.percentile(known, (1.0, 99.0)))
-        colors = _height_colors(heights.heights, low, high)
-        picture = np.flipud(np.where(heights.filled[..., None], 0.6 * colors, colors)).astype(np.uint8)
-        enlarged = picture.repeat(_CELL_PIXELS, axis=0).repeat(_CELL_PIXELS, axis=1)
-        self._stream.log("height_map", encoded_drawing(enlarged))
-        step = (slice(None, None, _MAP_STRIDE),) * 2
-        v, u = np.nonzero(~np.isnan(heights.heights[step]))
-        xy = heights.origin_world + heights.resolution * (_MAP_STRIDE * np.column_stack((u, v)) + 0.5)
-        points = np.column_stack((xy, heights.heights[step][v, u])).astype(np.float32)
-        radius = 0.5 * _MAP_STRIDE * heights.resolution
-        self._stream.log("world/around/height_map", rr.Points3D(points, colors=colors[step][v, u], radii=radius))
+        self._stream.log("height_map", encoded_drawing(height_picture(heights)))
+        colors = colored(heights.heights)[known]
+        cells = rr.Points3D(heights.points_world, colors=colors, radii=0.5 * heights.resolution)
+        self._stream.log("world/around/height_map", cells)
         if scan is not None:
             points = _scan_points(scan)
             self._stream.log("world/around/scan", rr.Points3D(points, colors=[palette.SCAN], radii=0.008))
@@ -115,14 +107,6 @@ def rejections(extraction: RegionExtraction) -> str:
         largest = max(alike, key=lambda piece: cv2.contourArea(piece.outline_image.astype(np.float32)))
         lines.append(f"| {cause} | {pieces} | {largest.reason} |")
     return "\n".join(lines)
-
-
-def _height_colors(heights: NDArray[np.float32], low: float, high: float) -> NDArray[np.uint8]:
-    """Blue is low and red is high, what is unknown is black, (rows, columns, 3) RGB."""
-    known = ~np.isnan(heights)
-    share = np.clip((np.where(known, heights, low) - low) / max(high - low, 1e-3), 0.0, 1.0)
-    bgr = cv2.applyColorMap((255.0 * share).astype(np.uint8), cv2.COLORMAP_TURBO)
-    return np.where(known[..., None], bgr[..., ::-1], np.uint8(0)).astype(np.uint8)
 
 
 def _scan_points(scan: LidarScan) -> NDArray[np.float32]:

@@ -62,7 +62,7 @@ class Recording:
     ) -> None:
         course = world.course
         self._stream = rr.RecordingStream(_APPLICATION, recording_id=f"{course.name}-{seed}")
-        self._stream.save(path, default_blueprint=default_blueprint(course.start[:2], course.goal[:2]))
+        self._stream.save(path, default_blueprint=default_blueprint(course.start[:2]))
         self._course = course
         self._sole = robot.sole_corners_sole
         self._columns = Columns(self._stream)
