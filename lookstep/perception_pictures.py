@@ -17,7 +17,7 @@ Picture = NDArray[np.uint8]
 _PAGE, _INK, _SOLE = (24, 26, 30), (14, 16, 20), (250, 250, 250)
 _PIXELS_PER_METRE = 160.0
 _FILLED = 0.6  # brightness of cells without data of their own
-_CELL_PIXELS = 3
+_CELL_PIXELS = 5
 
 
 def depth_picture(image: DepthImage) -> Picture:
@@ -28,9 +28,13 @@ def depth_picture(image: DepthImage) -> Picture:
 
 
 def height_picture(heights: HeightMap) -> Picture:
-    """The map from above, x to the right and y up; red is high, blue is low, filled cells are darker."""
+    """The known part from above, x to the right and y up; red is high, blue is low, filled cells are darker."""
     colors = colored(heights.heights)
+    known = ~np.isnan(heights.heights)
     picture = np.where(heights.filled[..., None], _FILLED * colors, colors).astype(np.uint8)
+    rows, columns = (np.flatnonzero(known.any(axis=axis)) for axis in (1, 0))
+    if len(rows):
+        picture = picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1]
     return np.flipud(picture).repeat(_CELL_PIXELS, axis=0).repeat(_CELL_PIXELS, axis=1)
 
 

@@ -44,7 +44,7 @@ _PART = 0.5  # brightness of the outlines of convex parts
 _LIGHT = (0.4, 0.5, 0.8)  # the way of the light in the camera frame: from above and from the left
 _AMBIENT = 0.55
 _SMOOTH = 1.0 / 220.0  # half of the window over which the slant of the surface is taken, of the width
-_LEGEND_WIDE = 56  # how many times wider than its text a legend must be for a single row
+_LEGEND_WIDE = 72  # how many times wider than its text a legend must be for a single row
 _TEXT_SHARE, _TEXT_MIN, _TEXT_MAX, _TEXT_WEIGHT = 1.0 / 46.0, 11, 18, 600  # of the width, [px]
 _FRACTION_BITS = 4  # of a pixel, for smooth lines
 
