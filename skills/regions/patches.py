@@ -83,7 +83,7 @@ def fit_facets(patches: Patches, sums: Array, parameters: RegionParameters) -> P
 
 
 def patch_size(camera: PinholeCamera, parameters: RegionParameters) -> int:
-    """Edge of a patch [px]: even, because refinement works on its quarters."""
+    """Edge of a patch [px], even."""
     if parameters.patch_size:
         return parameters.patch_size + parameters.patch_size % 2
     return max(4, 2 * round(0.5 * parameters.patch_angle * camera.fx))
