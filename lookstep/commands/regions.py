@@ -66,8 +66,9 @@ def execute(options: argparse.Namespace) -> int:
     image = depth_image(values, scale, camera, options.height, np.deg2rad(options.pitch))
     extraction, milliseconds = _timed(image, parameters)
     figures = dataclasses.replace(extraction_figures(extraction), extract_ms=milliseconds, runs=_RUNS)
-    _print(figures, _about(options, image, scale))
-    _write(_files(options), extraction, figures)
+    files = _files(options)
+    _write(files, extraction, figures)
+    _print(figures, _about(options, image, scale), files)
     return 0
 
 
@@ -137,7 +138,7 @@ def _about(options: argparse.Namespace, image: DepthImage, scale: float) -> str:
     return f"{size}\ndepth {low:.2f} .. {high:.2f} m, median {middle:.2f} m"
 
 
-def _print(figures: ExtractionFigures, about: str) -> None:
+def _print(figures: ExtractionFigures, about: str, files: dict[str, Path]) -> None:
     from rich.console import Console
     from rich.table import Table
 
@@ -160,6 +161,9 @@ def _print(figures: ExtractionFigures, about: str) -> None:
     console.print(f"rejected   {rejected}")
     console.print(f"pixels     {shares}")
     console.print(f"extraction {figures.extract_ms:.1f} ms, median of {figures.runs}")
+    for name, file in files.items():
+        opened = f"   (open it: ./run rerun {file})" if name == "record" else ""
+        console.print(f"{name:<10} {file}{opened}", markup=False)
 
 
 def _write(files: dict[str, Path], extraction: RegionExtraction, figures: ExtractionFigures) -> None:
@@ -175,6 +179,3 @@ def _write(files: dict[str, Path], extraction: RegionExtraction, figures: Extrac
         write_extraction(files["record"], extraction, picture)
     if "json" in files:
         figures.write(files["json"])
-    for name, file in files.items():
-        opened = f"   (open it: ./run rerun {file})" if name == "record" else ""
-        print(f"{name:<10} {file}{opened}")
