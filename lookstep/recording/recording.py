@@ -31,7 +31,7 @@ from skills.walking import StepEventKind
 _APPLICATION = "lookstep"
 # Links are drawn, images and maps of the ground kept at these periods; everything else when it changes [s].
 _LINK_PERIOD = 0.05
-_VALUE_PERIODS: dict[type, float] = {RegionExtraction: 0.5, PlanarRegions: 0.5, HeightMap: 2.0}
+_VALUE_PERIODS: dict[type, float] = {RegionExtraction: 1.0, PlanarRegions: 0.5, HeightMap: 2.0}
 _FLUSH_PERIOD = 2.0
 _REASON_PERIOD = 1.0
 _SUB_GOAL_RADIUS = 0.05
