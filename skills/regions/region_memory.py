@@ -80,6 +80,7 @@ class RegionMemory:
     ground: PlanarRegions | None = None
     update: GroundUpdate | None = None
     kept: tuple[Remembered, ...] = ()
+    T_world_map: Pose = IDENTITY
     T_world_key: Pose | None = None
     start: Stance | None = None
     reference: HeightReference | None = None
@@ -132,12 +133,29 @@ def remember(
         image: the frame; it tells where the camera is, and through which old regions it sees.
         parameters: numbers.
     """
+    if memory.T_world_map is not IDENTITY:
+        T_map_world = memory.T_world_map.inverse
+        regions, stance, image = regions.moved(T_map_world), stance.moved(T_map_world), image.moved(T_map_world)
     before = None if memory.update is None else memory.update.drift
     drift = register(regions, image, memory.reference, before, parameters.registration)
     T = drift.T_world_frame
     if T is not IDENTITY:
         regions, stance, image = regions.moved(T), stance.moved(T), image.moved(T)
-    return _Frame(memory, regions, stance, image, parameters).joined(drift)
+    return _slid(_Frame(memory, regions, stance, image, parameters).joined(drift), drift)
+
+
+def _slid(memory: RegionMemory, drift: Drift) -> RegionMemory:
+    """The map where its camera sees it now.
+
+    Frames of a camera that is mounted askew agree only in a map that slides along with the walk. The robot does not.
+    """
+    T_world_map = memory.T_world_map
+    if drift.apparent_world.any():
+        T_world_map = Pose(np.eye(3), T_world_map.p - drift.apparent_world)
+    if T_world_map is IDENTITY or memory.ground is None or memory.update is None:
+        return memory
+    update = replace(memory.update, T_world_odometry=T_world_map @ memory.update.T_world_odometry)
+    return replace(memory, ground=memory.ground.moved(T_world_map), update=update, T_world_map=T_world_map)
 
 
 class _Frame:

@@ -4,7 +4,8 @@ The regions of the newest frame and those of earlier ones are painted into raste
 the turn about the vertical that bring the new ground onto the old are found by Gauss-Newton on blurred heights, coarse
 to fine (Lucas and Kanade, 1981), with weights that fall off for what does not fit (Geman and McClure), so that a block
 that was moved does not pull. Roll and pitch are left alone: gravity is known. What the ground does not show, such as a
-shift along a floor without features, is up to a prior: the drift goes on as it did. The prior yields to a jump.
+shift along a floor without features, is up to a prior: the drift goes on as it did. The prior yields to a jump. What
+a camera mounted askew makes of the robot's own motion is told from drift, and is not booked as such.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ import numpy as np
 from skills.geometry.camera import DepthImage
 from skills.geometry.pose import IDENTITY, Array, Pose, readonly, rotation_z
 from skills.kernels import kernel
+from skills.regions.apparent_motion import ApparentMotion, causes_of
 from skills.regions.height_reference import HeightReference
 from skills.regions.planar_region import PlanarRegions
 from skills.regions.region_cells import T_RASTER_WORLD, Raster, Window, cells_of
@@ -31,6 +33,8 @@ _KNOWN_MIN, _KNOWN_CHANGE = 0.4, 0.15
 _CELLS_MIN = 100
 _PRIOR_MIN = 1e-4
 _SHORTEST = 1e-3  # [s]
+# A larger surprise in one frame is a jump, which says nothing about what goes on steadily [m] and [rad].
+_STEADY = 5e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,22 +44,28 @@ class Drift:
     Attributes:
         T_world_frame: what brings the frame's ground onto the ground known before.
         shift_turn: the same as a shift of the ground in view and a turn about its middle, (4,) [m, m, m, rad].
-        rate: steady part of it, (4,) [m/s, rad/s].
+        apparent_world: the part of the shift that the camera is to blame for, (3,) [m].
+        motion: what is known of drift and camera.
+        turn_rate: steady part of the turn [rad/s].
         time: robot time of the frame [s].
+        camera_odometry: where the robot estimated the camera, (3,) [m].
         overlap: share of the frame's ground that could be compared.
         reason: why the frame could not say where it is; empty where it could.
     """
 
     T_world_frame: Pose
     shift_turn: Array
-    rate: Array
+    apparent_world: Array
+    motion: ApparentMotion
+    turn_rate: float
     time: float
+    camera_odometry: Array
     overlap: float = 0.0
     reason: str = ""
 
     def __post_init__(self) -> None:
-        for name in ("shift_turn", "rate"):
-            object.__setattr__(self, name, readonly(getattr(self, name), (4,)))
+        for name, count in (("shift_turn", 4), ("apparent_world", 3), ("camera_odometry", 3)):
+            object.__setattr__(self, name, readonly(getattr(self, name), (count,)))
 
 
 def register(
@@ -74,19 +84,25 @@ def register(
         before: the drift of the frame before.
         parameters: how far to trust the frame.
     """
+    camera = image.T_world_odometry.inverse @ image.T_world_camera.p
     if reference is None or before is None:
-        return Drift(IDENTITY, np.zeros(4), np.zeros(4), image.time, reason="no ground is known yet")
+        unknown, still = ApparentMotion.unknown(), np.zeros(4)
+        return Drift(IDENTITY, still, np.zeros(3), unknown, 0.0, image.time, camera, 0.0, "no ground is known yet")
     dt = image.time - before.time
-    predicted = before.rate * dt
+    moved = image.T_world_odometry.R @ (camera - before.camera_odometry)
+    causes = causes_of(dt, moved, image.T_world_camera.R)
+    predicted = np.append(T_RASTER_WORLD.R @ causes @ before.motion.estimate, before.turn_rate * dt)
     window = _window_of(regions, image, parameters)
     newest, known = window.paint(cells_of(regions.regions, parameters.cell)), reference.cut(window)
     found, overlap, reason = _fit(newest, known, window, predicted, parameters)
-    if reason:
-        rate = before.rate * np.exp(-dt / parameters.rate_memory)
-        return Drift(_as_pose(predicted, window), predicted, rate, image.time, overlap, reason)
+    kept = float(np.exp(-dt / parameters.rate_memory))
     surprise = found - predicted
-    rate = before.rate + parameters.rate_gain * _trust(surprise, parameters) * surprise / max(dt, _SHORTEST)
-    return Drift(_as_pose(found, window), found, rate, image.time, overlap)
+    steady = not reason and bool(np.abs(surprise).max() < _STEADY)
+    turn_rate = kept * before.turn_rate + parameters.rate_gain * steady * float(surprise[3]) / max(dt, _SHORTEST)
+    motion = before.motion.learned(causes, T_RASTER_WORLD.R.T @ found[:3], float(steady), kept)
+    apparent = motion.of_camera(causes, parameters.mount_min, parameters.scale_min)
+    T_world_frame = _as_pose(found, window)
+    return Drift(T_world_frame, found, apparent, motion, turn_rate, image.time, camera, overlap, reason)
 
 
 def _window_of(regions: PlanarRegions, image: DepthImage, parameters: RegistrationParameters) -> Window:

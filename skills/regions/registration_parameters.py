@@ -33,10 +33,16 @@ class RegistrationParameters:
         np.deg2rad(0.7), unit="rad", minimum=0.001, maximum=1.0, meaning="the same for jumps of the heading"
     )
     rate_gain: float = parameter(
-        0.05, unit="1", minimum=0.0, maximum=1.0, meaning="share of a correction that is taken for steady drift"
+        0.05, unit="1", minimum=0.0, maximum=1.0, meaning="share of a turn that is taken for steady drift"
+    )
+    mount_min: float = parameter(
+        np.deg2rad(0.3), unit="rad", minimum=0.0, maximum=1.0, meaning="smaller errors of the mount are not looked at"
+    )
+    scale_min: float = parameter(
+        0.003, unit="1", minimum=0.0, maximum=1.0, meaning="smaller errors of the depth's scale are not looked at"
     )
     rate_memory: float = parameter(
-        20.0,
+        60.0,
         unit="s",
         minimum=0.1,
         maximum=1000.0,
