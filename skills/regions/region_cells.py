@@ -43,13 +43,18 @@ class Cells(NamedTuple):
         if not parts:
             return _NO_CELLS
         starts = np.cumsum([0, *(len(part.rows) for part in parts)])
-        rows, columns, heights = (np.concatenate([part[k] for part in parts]) for k in range(3))
-        return cls(rows, columns, heights, starts)
+        return cls(
+            np.concatenate([part.rows for part in parts]),
+            np.concatenate([part.columns for part in parts]),
+            np.concatenate([part.heights for part in parts]),
+            starts,
+        )
 
     def points_world(self, cell: float, stride: int = 1) -> Array:
         """Every so many of the points, (N, 3) [m]."""
-        xy = cell * (np.column_stack((self.columns[::stride], self.rows[::stride])) + 0.5)
-        return T_RASTER_WORLD.inverse @ np.column_stack((xy, self.heights[::stride]))
+        places = np.column_stack((self.columns[::stride], self.rows[::stride])) + 0.5
+        points = np.column_stack((cell * places, self.heights[::stride].astype(np.float64)))
+        return T_RASTER_WORLD.inverse @ points
 
 
 _NO_CELLS = Cells(np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0, np.float32), np.zeros(1, np.int64))

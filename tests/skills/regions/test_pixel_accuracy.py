@@ -103,8 +103,8 @@ def test_pixels_that_are_no_depth_count_as_lost(value):
     lost = np.random.default_rng(0).random(image.depth.shape) < 0.05
     bad, zero = image.depth.copy(), image.depth.copy()
     bad[lost], zero[lost] = value, 0.0
-    results = [segment(DepthImage(depth, image.camera, image.T_world_camera, 0.0, 0)).labels for depth in (bad, zero)]
-    np.testing.assert_array_equal(*results)
+    labels = [segment(DepthImage(depth, image.camera, image.T_world_camera, 0.0, 0)).labels for depth in (bad, zero)]
+    np.testing.assert_array_equal(labels[0], labels[1])
 
 
 def test_what_two_blocks_join_to_by_loose_limits_is_cut_again():
