@@ -47,6 +47,14 @@ class FootstepParameters:
     cliff_toe: float = parameter(0.04, unit="m", meaning="distance before the toe without a cliff", minimum=0.0)
     cliff_side: float = parameter(0.02, unit="m", meaning="distance from heel and sides without a cliff", minimum=0.0)
 
+    body_width: float = parameter(0.45, unit="m", meaning="width of the body, for walls", minimum=0.0, maximum=2.0)
+    body_depth: float = parameter(0.30, unit="m", meaning="depth of the body, for walls", minimum=0.0, maximum=2.0)
+    body_base: float = parameter(0.45, unit="m", meaning="height over the feet of the body's lower end", minimum=0.0)
+    body_top: float = parameter(1.7, unit="m", meaning="height over the feet of its upper end", minimum=0.0)
+    step_over: float = parameter(
+        0.3, unit="m", meaning="highest wall, over the feet, that is stepped over", minimum=0.0
+    )
+
     step_cost: float = parameter(0.15, unit="1", meaning="cost of a step", minimum=0.01)
     height_cost: float = parameter(0.5, unit="1/m", meaning="cost of a rise or drop", minimum=0.0)
     tilt_cost: float = parameter(0.05, unit="1", meaning="cost of a foothold's slope, times its tangent", minimum=0.0)
@@ -83,6 +91,12 @@ class FootstepParameters:
     heading_tolerance: float = parameter(0.35, unit="rad", meaning="sub-goal tolerance of the heading", minimum=0.0)
     goal_tolerance: float = parameter(0.06, unit="m", meaning="distance of each foot from its place at the goal")
     goal_yaw_tolerance: float = parameter(0.13, unit="rad", meaning="heading of each foot off the goal's", minimum=0.0)
+    goal_height_tolerance: float = parameter(0.3, unit="m", meaning="height of a foot off the goal's", minimum=0.0)
+    final_turn: float = parameter(0.3, unit="m", meaning="distance at which the goal's heading is taken", minimum=0.0)
+    field_cell: float = parameter(0.06, unit="m", meaning="cell of the field that guides a whole way", minimum=0.02)
+    whole_way_expansions: int = parameter(
+        10000, unit="1", meaning="nodes a search for a whole way may expand", minimum=1
+    )
     minimum_progress: float = parameter(0.1, unit="m", meaning="progress that a partial plan must make", minimum=0.0)
 
 
@@ -93,4 +107,5 @@ class TerrainParameters:
     resolution: float = parameter(0.01, unit="m", meaning="cell size of the raster", minimum=0.002, maximum=0.05)
     seam_width: float = parameter(0.03, unit="m", meaning="gap between regions that counts as ground", minimum=0.0)
     seam_step: float = parameter(0.02, unit="m", meaning="largest height difference across a seam", minimum=0.0)
+    wall_resolution: float = parameter(0.02, unit="m", meaning="cell size for walls", minimum=0.005, maximum=0.1)
     steepest_region: float = parameter(radians(70.0), unit="rad", meaning="steeper regions are walls", maximum=1.5)

@@ -7,17 +7,19 @@ the plan, as long as they get the robot on (after Calvert et al., 2022, and Grif
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skills.footsteps.footstep import Footstep, FootstepPlan, PlanOutcome, Side, Stance
-from skills.footsteps.footstep_lattice import FootstepLattice, search_window
+from skills.footsteps.footstep_lattice import FootstepLattice
 from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
 from skills.footsteps.footstep_search import OUT_OF_BUDGET, REACHED, search_footsteps
 from skills.footsteps.open_list import EDGE
 from skills.footsteps.search_request import search_space
+from skills.footsteps.search_target import SearchTarget, search_window
 from skills.footsteps.step_cost import REASONS
 from skills.footsteps.swing_clearance import swing_clearance
 from skills.footsteps.terrain import RegionTerrain, Terrain, region_terrain
@@ -55,21 +57,12 @@ def plan_from_stance(
     max_expansions: int | None = None,
 ) -> FootstepPlan:
     """Plan from a stance that may start with either foot, and keep the better plan; see `plan_footsteps`."""
+    target = SearchTarget.on_path(goal, stance, parameters)
+    ids = {"plan_id": plan_id, "first_sequence_id": first_sequence_id}
     left, right = (
-        plan_footsteps(
-            terrain,
-            stance,
-            side,
-            goal,
-            parameters,
-            plan_id=plan_id,
-            first_sequence_id=first_sequence_id,
-            reference=reference,
-            max_expansions=max_expansions,
-        )
-        for side in (Side.LEFT, Side.RIGHT)
+        search_plan(terrain, stance, side, target, parameters, reference, max_expansions, **ids) for side in Side
     )
-    return left if _rank(left, goal) <= _rank(right, goal) else right
+    return min(left, right, key=lambda found: found.rank).plan
 
 
 def plan_footsteps(
@@ -101,26 +94,64 @@ def plan_footsteps(
         The plan. Its outcome is GOAL_REACHED with both feet at the end of the path, ENOUGH_STEPS at the sub-goal,
         PARTIAL where the search ended before but its best steps make progress, BLOCKED without steps where not.
     """
+    target = SearchTarget.on_path(goal, imminent_stance, parameters)
+    ids = {"plan_id": plan_id, "first_sequence_id": first_sequence_id}
+    return search_plan(terrain, imminent_stance, first_side, target, parameters, reference, max_expansions, **ids).plan
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FoundPlan:
+    """A plan, and how far on it gets [m]."""
+
+    plan: FootstepPlan
+    progress: float
+
+    @property
+    def rank(self) -> tuple[int, float, float]:
+        """Order of plans, the best lowest: by outcome, then a partial plan's progress, then cost."""
+        order = (PlanOutcome.GOAL_REACHED, PlanOutcome.ENOUGH_STEPS, PlanOutcome.PARTIAL, PlanOutcome.BLOCKED)
+        progress = self.progress if self.plan.outcome is PlanOutcome.PARTIAL else 0.0
+        return order.index(self.plan.outcome), -progress, self.plan.cost
+
+
+def search_plan(
+    terrain: Terrain,
+    stance: Stance,
+    first_side: Side,
+    target: SearchTarget,
+    parameters: FootstepParameters,
+    reference: FootstepPlan | None,
+    max_expansions: int | None,
+    *,
+    plan_id: int,
+    first_sequence_id: int,
+) -> FoundPlan:
+    """Search for the steps from a stance to a target; see `plan_footsteps`."""
     budget = parameters.max_expansions if max_expansions is None else max_expansions
-    lattice = FootstepLattice.around(imminent_stance, first_side, goal, parameters)
-    space = search_space(terrain, lattice, imminent_stance, first_side, goal, reference, parameters)
+    lattice = FootstepLattice.around(terrain, stance, first_side, target, parameters)
+    space = search_space(terrain, lattice, stance, first_side, target, reference, parameters)
     open_list = np.empty(_OPEN_LIST, dtype=EDGE)
     ended, last, before_last, cost, expansions, saved = search_footsteps(space, open_list, budget)
     counted = _counted(space.rejections)
     reason = "" if ended == REACHED else _why(ended, budget, counted)
-    outcome = _outcome(ended, saved / parameters.step_cost * parameters.reach, goal, parameters)
+    progress = saved / parameters.step_cost * parameters.reach
+    outcome = _outcome(ended, progress, target, parameters)
     if outcome is PlanOutcome.BLOCKED:
-        return FootstepPlan(plan_id, terrain.frame_id, outcome, f"no way on: {reason}", (), 0.0, expansions, counted)
+        reason = f"no way on: {reason}"
+        return FoundPlan(
+            FootstepPlan(plan_id, terrain.frame_id, outcome, reason, (), 0.0, expansions, counted), progress
+        )
     way = _way(space.nodes["parent"], last, before_last)
     landings = [lattice.pose(node, space.grounds) for node in way]
     shares = [float(space.grounds[node % lattice.stances]["share"]) for node in way]
-    steps = _steps(landings, shares, terrain, imminent_stance, first_side, parameters, first_sequence_id)
-    return FootstepPlan(plan_id, terrain.frame_id, outcome, reason, steps, float(cost), expansions, counted)
+    steps = _steps(landings, shares, terrain, stance, first_side, parameters, first_sequence_id)
+    plan = FootstepPlan(plan_id, terrain.frame_id, outcome, reason, steps, float(cost), expansions, counted)
+    return FoundPlan(plan, progress)
 
 
-def _outcome(ended: int, progress: float, goal: SubGoal, parameters: FootstepParameters) -> PlanOutcome:
+def _outcome(ended: int, progress: float, target: SearchTarget, parameters: FootstepParameters) -> PlanOutcome:
     if ended == REACHED:
-        return PlanOutcome.GOAL_REACHED if goal.final else PlanOutcome.ENOUGH_STEPS
+        return PlanOutcome.GOAL_REACHED if target.final else PlanOutcome.ENOUGH_STEPS
     return PlanOutcome.PARTIAL if progress >= parameters.minimum_progress else PlanOutcome.BLOCKED
 
 
@@ -167,15 +198,6 @@ def whole_sole(parameters: FootstepParameters) -> Array:
     """The sole's outline in its frame, (4, 2) counter-clockwise [m]."""
     x, y = 0.5 * parameters.sole_length, 0.5 * parameters.sole_width
     return np.array(((-x, -y), (x, -y), (x, y), (-x, y)))
-
-
-def _rank(plan: FootstepPlan, goal: SubGoal) -> tuple[int, float, float]:
-    """Order of plans, the best lowest: by outcome, then a partial plan's progress, then cost."""
-    order = (PlanOutcome.GOAL_REACHED, PlanOutcome.ENOUGH_STEPS, PlanOutcome.PARTIAL, PlanOutcome.BLOCKED)
-    progress = 0.0
-    if plan.outcome is PlanOutcome.PARTIAL:
-        progress = goal.path.project(plan.steps[-1].T_world_sole.p)
-    return order.index(plan.outcome), -progress, plan.cost
 
 
 def _counted(rejections: NDArray[np.int64]) -> tuple[tuple[str, int], ...]:

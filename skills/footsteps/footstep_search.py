@@ -15,8 +15,10 @@ from numpy.typing import NDArray
 from skills.footsteps.level_steps import fill_level_steps
 from skills.footsteps.open_list import pop, push, with_room
 from skills.footsteps.path_progress import judge
-from skills.footsteps.plane_raster import FOOTHOLD, UNSEEN, snap_sole
-from skills.footsteps.search_space import CLOSED, JUDGED, OPEN, UNKNOWN, Records, SearchSpace
+from skills.footsteps.plane_raster import Raster
+from skills.footsteps.records import Records
+from skills.footsteps.search_space import CLOSED, JUDGED, OPEN, UNKNOWN, SearchSpace
+from skills.footsteps.sole_snap import FOOTHOLD, NO_GROUND, UNSEEN, snap_sole
 from skills.footsteps.step_cost import OUTSIDE, step_cost
 from skills.geometry.pose import Array
 from skills.kernels import kernel
@@ -41,7 +43,7 @@ def search_footsteps(
     limits, goal, lattice, stand = space.limits[0], space.goal[0], space.lattice[0], space.stand[0]
     headings, feet, nodes, grounds = space.headings, space.feet, space.nodes, space.grounds
     reference, rejections = space.reference, space.rejections
-    root, swing = _put_feet(limits, goal, lattice, space.path, headings, feet, nodes, grounds)
+    root, swing = _put_feet(limits, goal, lattice, space.path, space.field, headings, feet, nodes, grounds)
     start_to_go, best = nodes[root].to_go, root
     size = push(open_list, 0, 0.0, 0.0, root, swing)
     outcome, expansions = EXHAUSTED, 0
@@ -55,9 +57,9 @@ def search_footsteps(
             x, y = _place(limits, lattice, feet, node)
             ground = grounds[node % lattice.stances]
             if ground.outcome == UNSEEN:
-                _snap(space, x, y, headings[node % lattice.stances // (lattice.ny * lattice.nx), 0], ground)
+                _snap(space, _floor(lattice, node), x, y, headings[_heading(lattice, node), 0], ground)
             _stand_on(limits, lattice, headings, feet, nodes, grounds, stance, stand)
-            cost = _take(limits, reference, stand, stance, x, y, nodes[node], ground, square, rejections)
+            cost = _take(space.raster, limits, reference, stand, stance, x, y, nodes[node], ground, square, rejections)
             if cost >= 0.0:
                 estimate = cost + limits.heuristic_weight * nodes[node].to_go
                 size = push(open_list, size, estimate, cost, node, stance)
@@ -82,28 +84,30 @@ def _put_feet(
     goal: Records,
     lattice: Records,
     path: Array,
+    field: Array,
     headings: Array,
     feet: Array,
     nodes: Records,
     grounds: Records,
 ) -> tuple[int, int]:
     """Put the stance foot and the swing foot where they are; their nodes."""
-    snap = (lattice.heading * lattice.ny + lattice.iy) * lattice.nx + lattice.ix
+    snap = ((lattice.floor * lattice.headings + lattice.heading) * lattice.ny + lattice.iy) * lattice.nx + lattice.ix
     root, swing = snap + (0 if feet[0, 6] > 0 else lattice.stances), 2 * lattice.stances
     ground = grounds[snap]
     ground.outcome, ground.z, ground.a, ground.b, ground.share = FOOTHOLD, feet[0, 2], feet[0, 4], feet[0, 5], 1.0
     for i in range(2):
         heading, node = (lattice.heading, root) if i == 0 else (lattice.headings, swing)
-        judge(limits, goal, path, feet[i, 0], feet[i, 1], headings[heading], feet[i, 6], nodes[node])
+        x, y, z = feet[i, 0], feet[i, 1], feet[i, 2]
+        judge(limits, goal, path, field, x, y, z, headings[heading], feet[i, 6], nodes[node])
     nodes[root].parent, nodes[root].status = swing, OPEN
     return root, swing
 
 
 @kernel
-def _snap(space: SearchSpace, x: float, y: float, yaw: float, ground: Records) -> None:
-    """Snap a sole to the ground and remember what it found."""
-    cells, planes, limits, samples, found = space.cells, space.planes, space.snap_limits, space.samples, space.snapped
-    ground.outcome = snap_sole(cells, planes, space.resolution, limits, samples, x, y, yaw, found)
+def _snap(space: SearchSpace, floor: int, x: float, y: float, yaw: float, ground: Records) -> None:
+    """Snap a sole to a floor and remember what it found."""
+    found = space.snapped
+    ground.outcome = snap_sole(space.raster, floor, space.snap_limits, space.samples, x, y, yaw, found)
     ground.z, ground.a, ground.b, ground.share = found[0], found[1], found[2], found[3]
 
 
@@ -112,22 +116,23 @@ def _expand(space: SearchSpace, open_list: Records, size: int, best: int, stance
     """Open the steps from a stance foot; the open list, its size, and the best node."""
     limits, goal, lattice, headings = space.limits[0], space.goal[0], space.lattice[0], space.headings
     nodes, grounds, rejections, stand = space.nodes, space.grounds, space.rejections, space.stand[0]
-    path, reference, x0, y0 = space.path, space.reference, space.feet[0, 0], space.feet[0, 1]
-    side, snap = stance // lattice.stances, stance % lattice.stances
-    heading, iy, ix = snap // (lattice.ny * lattice.nx), snap // lattice.nx % lattice.ny, snap % lattice.nx
+    path, field, reference, x0, y0 = space.path, space.field, space.reference, space.feet[0, 0], space.feet[0, 1]
+    side, heading = stance // lattice.stances, _heading(lattice, stance)
+    iy, ix = stance // lattice.nx % lattice.ny, stance % lattice.nx
     table, sign = side * lattice.headings + heading, 2.0 * side - 1.0
     steps = space.steps[table]
     if space.step_counts[table] == 0:
         space.step_counts[table] = fill_level_steps(limits, headings, heading, sign, steps)
     count = int(space.step_counts[table])
-    open_list = with_room(open_list, size, count)
+    open_list = with_room(open_list, size, count * lattice.floors)
     _stand_on(limits, lattice, headings, space.feet, nodes, grounds, stance, stand)
-    for k in range(count):
-        jx, jy, turned = ix + steps[k, 0], iy + steps[k, 1], steps[k, 2]
+    for k in range(count * lattice.floors):
+        step, floor = k // lattice.floors, k % lattice.floors
+        jx, jy, turned = ix + steps[step, 0], iy + steps[step, 1], steps[step, 2]
         if jx < 0 or jy < 0 or jx >= lattice.nx or jy >= lattice.ny:
             rejections[OUTSIDE] += 1
             continue
-        snap = (turned * lattice.ny + jy) * lattice.nx + jx
+        snap = ((floor * lattice.headings + turned) * lattice.ny + jy) * lattice.nx + jx
         ground = grounds[snap]
         if ground.outcome > FOOTHOLD:
             rejections[ground.outcome] += 1
@@ -136,15 +141,23 @@ def _expand(space: SearchSpace, open_list: Records, size: int, best: int, stance
         there = nodes[node]
         x, y = x0 + (jx - lattice.ix) * limits.lattice, y0 + (jy - lattice.iy) * limits.lattice
         if there.status == UNKNOWN:
+            z = _height(space.raster, floor, x, y)
+            if np.isnan(z):
+                ground.outcome = NO_GROUND
+                rejections[NO_GROUND] += 1
+                continue
             there.status = JUDGED
-            judge(limits, goal, path, x, y, headings[turned], sign, there)
+            judge(limits, goal, path, field, x, y, z, headings[turned], sign, there)
+        if there.to_go == np.inf:
+            rejections[OUTSIDE] += 1
+            continue
         square = goal.final and there.arrived and nodes[stance].arrived
         least = stand.cost + limits.step_cost + there.off_path_cost
         if not square and (there.status == CLOSED or (there.status == OPEN and least >= there.cost)):
             continue
         cost = -1.0
         if ground.outcome == FOOTHOLD:
-            cost = _take(limits, reference, stand, stance, x, y, there, ground, square, rejections)
+            cost = _take(space.raster, limits, reference, stand, stance, x, y, there, ground, square, rejections)
             if cost < 0.0:
                 continue
             least = cost
@@ -156,6 +169,7 @@ def _expand(space: SearchSpace, open_list: Records, size: int, best: int, stance
 
 @kernel
 def _take(
+    raster: Raster,
     limits: Records,
     reference: Array,
     stand: Records,
@@ -171,7 +185,7 @@ def _take(
 
     Where no better way to the foot is known, it takes this one.
     """
-    cost = step_cost(limits, reference, stand, x, y, ground)
+    cost = step_cost(raster, limits, reference, stand, x, y, ground)
     if cost < 0.0:
         rejections[int(-cost)] += 1
         return -1.0
@@ -195,7 +209,7 @@ def _stand_on(
 ) -> None:
     """Fill in what a step from a stance foot depends on."""
     snap, swing = stance % lattice.stances, nodes[stance].parent
-    ground, heading = grounds[snap], snap // (lattice.ny * lattice.nx)
+    ground, heading = grounds[snap], _heading(lattice, stance)
     stand.x, stand.y = _place(limits, lattice, feet, stance)
     stand.z, stand.cos, stand.sin = ground.z, headings[heading, 1], headings[heading, 2]
     stand.uphill = ground.a * stand.cos + ground.b * stand.sin
@@ -212,3 +226,25 @@ def _place(limits: Records, lattice: Records, feet: Array, node: int) -> tuple[f
     """Where a node is: x, y from the corner."""
     ix, iy = node % lattice.nx - lattice.ix, node // lattice.nx % lattice.ny - lattice.iy
     return feet[0, 0] + ix * limits.lattice, feet[0, 1] + iy * limits.lattice
+
+
+@kernel
+def _heading(lattice: Records, node: int) -> int:
+    return node // (lattice.ny * lattice.nx) % lattice.headings
+
+
+@kernel
+def _floor(lattice: Records, node: int) -> int:
+    return node % lattice.stances // (lattice.headings * lattice.ny * lattice.nx)
+
+
+@kernel
+def _height(raster: Raster, floor: int, x: float, y: float) -> float:
+    """Height of a floor at x, y from the corner; NaN where it has no ground."""
+    scale = 1.0 / raster.resolution
+    if x < 0.0 or y < 0.0 or x * scale >= raster.cells.shape[2] or y * scale >= raster.cells.shape[1]:
+        return np.nan
+    plane = raster.cells[floor, int(y * scale), int(x * scale)]
+    if plane < 0:
+        return np.nan
+    return raster.planes[plane, 0] * x + raster.planes[plane, 1] * y + raster.planes[plane, 2]

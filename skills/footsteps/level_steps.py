@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skills.footsteps.footstep_parameters import FootstepParameters
-from skills.footsteps.search_space import Records
+from skills.footsteps.records import Records
 from skills.geometry.pose import Array
 from skills.kernels import kernel
 

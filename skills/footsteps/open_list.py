@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from skills.footsteps.search_space import Records
+from skills.footsteps.records import Records
 from skills.kernels import kernel
 
 # An edge from a parent to a node; its cost is negative as long as it is only estimated.

@@ -1,25 +1,85 @@
-"""How far along its path a foot has brought the body: what a search aims at, and what being off the path costs."""
+"""How far a foot has brought the body: what a search aims at, and what being off the way costs."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from skills.footsteps.search_space import Records
+from skills.footsteps.goal_field import look_up
+from skills.footsteps.records import Records
 from skills.geometry.pose import Array
 from skills.kernels import kernel
+
+# A foot may miss its place at the goal by so many tolerances where no better one is near; a tolerance is worth so many
+# steps.
+_LOOSE, _MISS = 2.0, 2.0
 
 
 @kernel
 def judge(
-    limits: Records, goal: Records, path: Array, x: float, y: float, heading: Array, sign: float, node: Records
+    limits: Records,
+    goal: Records,
+    path: Array,
+    field: Array,
+    x: float,
+    y: float,
+    z: float,
+    heading: Array,
+    sign: float,
+    node: Records,
 ) -> None:
-    """Judge a foot by the body beside it: the cost of being off the path, the estimated cost to go, whether it arrived.
+    """Judge a foot by the body beside it: the cost of being off the way, the estimated cost to go, whether it arrived.
 
-    The estimate counts the steps that are needed at least, by the way left along the path and by the heading.
+    The way is a path, or where there is a field, that; `z` counts for a field alone.
     """
     yaw, cos, sin = heading[0], heading[1], heading[2]
     body_x = x + 0.5 * sign * limits.ideal_width * sin
     body_y = y - 0.5 * sign * limits.ideal_width * cos
+    if field.shape[0] > 0:
+        _judge_by_field(limits, goal, path, field, x, y, body_x, body_y, z, yaw, node)
+    else:
+        _judge_by_path(limits, goal, path, body_x, body_y, yaw, node)
+
+
+@kernel
+def _judge_by_field(
+    limits: Records,
+    goal: Records,
+    path: Array,
+    field: Array,
+    x: float,
+    y: float,
+    body_x: float,
+    body_y: float,
+    z: float,
+    yaw: float,
+    node: Records,
+) -> None:
+    """The field tells the cost to go and the heading; near its end the heading is the goal's."""
+    last = path.shape[0] - 1
+    to_go, way = look_up(limits, field, body_x, body_y, z)
+    if to_go == np.inf:
+        # Between two footholds there may be no ground under the body.
+        to_go, way = look_up(limits, field, x, y, z)
+    remaining = np.hypot(body_x - path[last, 0], body_y - path[last, 1])
+    turn = abs(_wrap(yaw - path[last, 2]))
+    level = abs(z - goal.z) <= limits.goal_height_tolerance
+    off, turned = remaining / limits.goal_tolerance, turn / limits.goal_yaw_tolerance
+    node.arrived = level and off <= _LOOSE and turned <= _LOOSE
+    if (level and remaining < limits.final_turn) or np.isnan(way):
+        way = path[last, 2]
+    node.off_path_cost = limits.yaw_cost * abs(_wrap(yaw - way))
+    spared = limits.step_cost * limits.goal_tolerance / limits.stride
+    turns = limits.step_cost * (turn - limits.goal_yaw_tolerance) / limits.turn
+    node.to_go = max(to_go - spared, turns, 0.0)
+    if node.arrived:
+        node.to_go += limits.step_cost * _MISS * (max(off - 1.0, 0.0) + max(turned - 1.0, 0.0))
+
+
+@kernel
+def _judge_by_path(
+    limits: Records, goal: Records, path: Array, body_x: float, body_y: float, yaw: float, node: Records
+) -> None:
+    """The estimate counts the steps that are needed at least, by the way left along the path and by the heading."""
     nearest, arc_length, off_heading = np.inf, 0.0, 0.0
     last = path.shape[0] - 1
     for i in range(last):

@@ -1,13 +1,13 @@
-"""Kernels on a raster of planes: draw planar regions into it, snap a sole to it, sweep a sole over it.
+"""Kernels on a raster of planes: planar regions drawn into it, and what is ground at a point.
 
 A cell holds the index of the plane z = a x + b y + c that is the ground there, -1 where none is known; x and y are
-measured from the corner of the raster, so that the arithmetic does not lose bits far from the world's origin.
+measured from the corner of the raster, so that the arithmetic does not lose bits far from the world's origin. Ground
+that lies higher above other ground than a robot is another floor, in a layer of its own: stairs wind over themselves.
 """
 
 from __future__ import annotations
 
-from itertools import pairwise
-from typing import Any
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,22 +18,26 @@ from skills.kernels import kernel
 Cells = NDArray[np.int32]
 Indices = NDArray[np.int64]
 
-UNSEEN, FOOTHOLD, NO_GROUND, TOO_STEEP, GROUND_ABOVE, TOO_SMALL, AT_CLIFF = range(7)
-SNAP_REASONS = ("", "", "no ground", "too steep", "ground above the sole", "foothold too small", "at a cliff")
-SAMPLE_SPACING = 0.01
+# Ground this far above other ground is another floor [m]; what is nearer hides what is below, or is newer.
+FLOOR_HEIGHT = 1.2
 
 
-# What a sole may stand on, for the kernels: fields are named after the parameters; `under` counts the samples that lie
-# under the sole, `close` those and the ones right beside it.
-SNAP_LIMITS = np.dtype(
-    [
-        (name, np.float64)
-        for name in (
-            *("tilt_tangent", "share", "support_below", "ground_above", "cliff_height"),
-            *("under", "close"),
-        )
-    ]
-)
+class Raster(NamedTuple):
+    """Ground and walls as the kernels take them; x and y are measured from the corner [m].
+
+    Attributes:
+        cells: plane indices by floor, (floors, rows, columns).
+        planes: planes (P, 3).
+        resolution: cell size [m].
+        walls: lowest and highest point of walls, (rows, columns, 2), in larger cells; empty where there are no walls.
+        wall_resolution: their size [m].
+    """
+
+    cells: Cells
+    planes: Array
+    resolution: float
+    walls: NDArray[np.float32]
+    wall_resolution: float
 
 
 @kernel
@@ -46,14 +50,18 @@ def draw_regions(
     times: Array,
     corner: Array,
     resolution: float,
+    drawn: Cells,
     cells: Cells,
     planes: Array,
-) -> None:
-    """Fill `planes` (R, 3) and `cells` (ny, nx) from the outlines of regions; even-odd, so holes stay open.
+) -> int:
+    """Fill `planes` (R, 3) and a layer of `cells` (ny, nx) from the outlines of regions; even-odd, so holes stay open.
 
-    The later region wins a cell, of two with the same time the higher one. Regions with a NaN plane are not drawn.
+    Of regions on one floor the later wins a cell, of two with the same time the higher one. Regions with a NaN plane,
+    and those on floors of layers already `drawn` (floors, ny, nx), are left out. Returns how many cells have one more
+    floor.
     """
     ny, nx = cells.shape
+    more_floors = 0
     region_count = rotations.shape[0]
     for r in range(region_count):
         nz = rotations[r, 2, 2]
@@ -100,22 +108,44 @@ def draw_regions(
                     stop = min(nx - 1, int(np.floor(min(crossings[k + 1], float(nx)))))
                     for ix in range(first, stop + 1):
                         there = cells[iy, ix]
-                        if there < 0 or times[r] != times[there]:
+                        if there < 0 and drawn.shape[0] == 0:
                             cells[iy, ix] = r
                             continue
                         x, y = (ix + 0.5) * resolution, (iy + 0.5) * resolution
-                        mine = planes[r, 0] * x + planes[r, 1] * y + planes[r, 2]
-                        other = planes[there, 0] * x + planes[there, 1] * y + planes[there, 2]
-                        if mine > other:
+                        if drawn.shape[0] > 0 and _is_drawn(drawn, planes, r, iy, ix, x, y):
+                            continue
+                        rise = _rise(planes, r, there, x, y) if there >= 0 else np.inf
+                        if there >= 0 and abs(rise) >= FLOOR_HEIGHT:
+                            more_floors += 1
+                        elif rise > 0.0 or times[r] != times[there]:
                             cells[iy, ix] = r
         ring = last
+    return more_floors
+
+
+@kernel
+def _rise(planes: Array, plane: int, other: int, x: float, y: float) -> float:
+    """How far a plane is above another at a point."""
+    a, b = planes[plane, 0] - planes[other, 0], planes[plane, 1] - planes[other, 1]
+    return a * x + b * y + planes[plane, 2] - planes[other, 2]
+
+
+@kernel
+def _is_drawn(drawn: Cells, planes: Array, plane: int, iy: int, ix: int, x: float, y: float) -> bool:
+    """Whether a plane lies on a floor of the layers drawn before."""
+    for floor in range(drawn.shape[0]):
+        there = drawn[floor, iy, ix]
+        if there >= 0 and abs(_rise(planes, plane, there, x, y)) < FLOOR_HEIGHT:
+            return True
+    return False
 
 
 @kernel
 def close_seams(cells: Cells, planes: Array, resolution: float, width: float, tolerance: float) -> Cells:
     """Give empty cells between two planes that agree in height there the plane of the nearer side.
 
-    A gap up to `width` wide along x or y whose sides differ by no more than `tolerance` is closed; returns new cells.
+    A gap up to `width` wide along x or y whose sides differ by no more than `tolerance` is closed. Cells of one floor,
+    (ny, nx); returns new ones.
     """
     ny, nx = cells.shape
     most = int(width / resolution + 0.5)
@@ -151,139 +181,31 @@ def close_seams(cells: Cells, planes: Array, resolution: float, width: float, to
 
 
 @kernel
-def snap_sole(
-    cells: Cells,
-    planes: Array,
-    resolution: float,
-    snap_limits: NDArray[Any],
-    samples: Array,
-    x: float,
-    y: float,
-    yaw: float,
-    out: Array,
-) -> int:
-    """Put a level sole at x, y (from the corner), yaw on the plane of the cell under its centre.
-
-    Writes height, slopes a and b, and supported share into `out` (4,), as far as they are known when a reason against
-    the foothold is found; returns FOOTHOLD or that reason. `samples` (N, 2) are points of the sole, then of its
-    surroundings, see `sole_samples`.
-    """
-    limits = snap_limits[0]
-    ny, nx = cells.shape
-    scale = 1.0 / resolution
-    if x < 0.0 or y < 0.0 or x * scale >= nx or y * scale >= ny:
-        return NO_GROUND
-    ground = cells[int(y * scale), int(x * scale)]
-    if ground < 0:
-        return NO_GROUND
-    a, b, c = planes[ground, 0], planes[ground, 1], planes[ground, 2]
-    out[0], out[1], out[2], out[3] = a * x + b * y + c, a, b, 1.0
-    if a * a + b * b > limits.tilt_tangent * limits.tilt_tangent:
-        return TOO_STEEP
-    cos, sin = np.cos(yaw), np.sin(yaw)
-    under, close = int(limits.under), int(limits.close)
-    unsupported = 0
-    for n in range(samples.shape[0]):
-        u, v = samples[n, 0], samples[n, 1]
-        px, py = x + cos * u - sin * v, y + sin * u + cos * v
-        there = -1
-        if px >= 0.0 and py >= 0.0 and px * scale < nx and py * scale < ny:
-            there = cells[int(py * scale), int(px * scale)]
-        if there == ground:
+def floor_near(cells: Cells, planes: Array, iy: int, ix: int, x: float, y: float, z: float) -> int:
+    """The plane in a cell that is the ground to one who stands at height z at x, y in it; -1 where there is none."""
+    best, highest = -1, -np.inf
+    for floor in range(cells.shape[0]):
+        there = cells[floor, iy, ix]
+        if there < 0:
             continue
-        rise = -np.inf
-        if there >= 0:
-            rise = (planes[there, 0] - a) * px + (planes[there, 1] - b) * py + planes[there, 2] - c
-        if n >= close:
-            if rise > limits.cliff_height:
-                return AT_CLIFF
-        elif rise > limits.ground_above:
-            return GROUND_ABOVE
-        elif n < under and rise < -limits.support_below:
-            unsupported += 1
-            out[3] = 1.0 - unsupported / limits.under
-            if out[3] < limits.share:
-                return TOO_SMALL
-    return FOOTHOLD
+        height = planes[there, 0] * x + planes[there, 1] * y + planes[there, 2]
+        if height <= z + 0.5 * FLOOR_HEIGHT and height > highest:
+            best, highest = there, height
+    return best
 
 
 @kernel
-def sweep_soles(
-    cells: Cells,
-    planes: Array,
-    resolution: float,
-    corner: Array,
-    half_length: float,
-    half_width: float,
-    soles: Array,
-    clearances: Array,
-) -> None:
-    """Smallest height of each sole above the ground under it; +inf where no ground is known.
-
-    `soles` (N, 6) rows x, y, z, yaw of the centre in the world and slopes a, b; `clearances` (N,) is filled.
-    """
-    ny, nx = cells.shape
-    scale = 1.0 / resolution
-    along = int(np.ceil(2 * half_length / SAMPLE_SPACING))
-    across = int(np.ceil(2 * half_width / SAMPLE_SPACING))
-    for n in range(soles.shape[0]):
-        x, y = soles[n, 0] - corner[0], soles[n, 1] - corner[1]
-        cos, sin = np.cos(soles[n, 3]), np.sin(soles[n, 3])
-        smallest = np.inf
-        for i in range(along + 1):
-            u = half_length * (2 * i / along - 1)
-            for j in range(across + 1):
-                v = half_width * (2 * j / across - 1)
-                dx, dy = cos * u - sin * v, sin * u + cos * v
-                px, py = x + dx, y + dy
-                if px < 0.0 or py < 0.0 or px * scale >= nx or py * scale >= ny:
-                    continue
-                there = cells[int(py * scale), int(px * scale)]
-                if there >= 0:
-                    ground = planes[there, 0] * px + planes[there, 1] * py + planes[there, 2]
-                    smallest = min(smallest, soles[n, 2] + soles[n, 4] * dx + soles[n, 5] * dy - ground)
-        clearances[n] = smallest
-
-
-def plane_heights(cells: Cells, planes: Array, resolution: float, corner: Array, points_world: Array) -> Array:
-    """Height of the ground under points (N, 2); NaN where none is known."""
-    from_corner = points_world[:, :2] - corner
-    index = np.floor(from_corner / resolution).astype(np.int64)
-    inside = np.all((index >= 0) & (index < cells.shape[::-1]), axis=1)
-    heights = np.full(len(points_world), np.nan)
-    ground = cells[index[inside, 1], index[inside, 0]]
-    a, b, c = planes[ground].T
-    heights[inside] = np.where(ground >= 0, a * from_corner[inside, 0] + b * from_corner[inside, 1] + c, np.nan)
-    return heights
-
-
-def sole_samples(length: float, width: float, edge: float, toe: float, beside: float) -> tuple[Array, int, int]:
-    """Points at which a sole feels the ground: under it to its very edge, right beside it, and farther around it.
-
-    Args:
-        length: length of the sole [m].
-        width: its width [m].
-        edge: how far from the sole is right beside it [m].
-        toe: how far before the toe it feels for cliffs [m].
-        beside: how far behind the heel and beside the sides [m].
-
-    Returns:
-        Points in the sole frame, (N, 2), each kind from the outside in; how many are under it, and how many under it
-        or right beside it.
-    """
-    x = _stations(*(-0.5 * length - d for d in (beside, edge, 0.0)), *(0.5 * length + d for d in (0.0, edge, toe)))
-    y = _stations(*(-0.5 * width - d for d in (beside, edge, 0.0)), *(0.5 * width + d for d in (0.0, edge, beside)))
-    points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
-    outside = np.max(np.abs(points) - (0.5 * length, 0.5 * width), axis=1)
-    kind = np.searchsorted((1e-9, edge + 1e-9), outside)
-    order = np.lexsort((-outside, kind))
-    return points[order], int(np.sum(kind == 0)), int(np.sum(kind <= 1))
-
-
-def _stations(*ends: float) -> Array:
-    """Coordinates from the first end to the last that hold all ends and lie no farther apart than the spacing."""
-    pieces = [
-        np.linspace(low, high, int(np.ceil((high - low) / SAMPLE_SPACING - 1e-9)), endpoint=False)
-        for low, high in pairwise(ends)
-    ]
-    return np.concatenate((*pieces, ends[-1:]))
+def plane_heights(raster: Raster, points: Array, heights: Array) -> None:
+    """Height of the ground under points x, y from the corner and z, (N, 3); NaN where none is known."""
+    scale = 1.0 / raster.resolution
+    _, ny, nx = raster.cells.shape
+    for n in range(points.shape[0]):
+        x, y, z = points[n, 0], points[n, 1], points[n, 2]
+        heights[n] = np.nan
+        if x >= 0.0 and y >= 0.0 and x * scale < nx and y * scale < ny:
+            iy, ix = int(y * scale), int(x * scale)
+            there = raster.cells[0, iy, ix]
+            if raster.cells.shape[0] > 1:
+                there = floor_near(raster.cells, raster.planes, iy, ix, x, y, z)
+            if there >= 0:
+                heights[n] = raster.planes[there, 0] * x + raster.planes[there, 1] * y + raster.planes[there, 2]

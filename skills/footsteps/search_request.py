@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,12 +10,10 @@ from skills.footsteps.footstep_lattice import FootstepLattice
 from skills.footsteps.footstep_parameters import FootstepParameters
 from skills.footsteps.level_steps import most_level_steps
 from skills.footsteps.search_space import GROUND, NODE, SEARCH_GOAL, STAND, STEP_LIMITS, SearchSpace
+from skills.footsteps.search_target import SearchTarget
 from skills.footsteps.step_cost import REASONS
 from skills.footsteps.terrain import Terrain, foothold_rules, pack, slopes
 from skills.geometry.pose import Array
-
-if TYPE_CHECKING:
-    from skills.body_path.sub_goal import SubGoal
 
 _SAME_PLACE = 0.03
 
@@ -27,23 +23,22 @@ def search_space(
     lattice: FootstepLattice,
     stance: Stance,
     first_side: Side,
-    goal: SubGoal,
+    target: SearchTarget,
     reference: FootstepPlan | None,
     parameters: FootstepParameters,
 ) -> SearchSpace:
     """Fresh memory for a search whose first step `first_side` makes; `reference` is the plan before."""
     corner = terrain.corner_world
-    headings = lattice.shape[0]
+    headings = lattice.shape[1]
     snap_limits, samples = foothold_rules(parameters)
     return SearchSpace(
-        cells=terrain.cells,
-        planes=terrain.planes,
-        resolution=terrain.resolution,
+        raster=terrain.raster,
         snap_limits=snap_limits,
         samples=samples,
-        limits=_step_limits(parameters),
-        goal=np.array([(goal.search_arc_length, goal.final)], dtype=SEARCH_GOAL),
-        path=goal.searched_world - (*corner, 0.0, 0.0),
+        limits=step_limits(parameters),
+        goal=np.array([(target.arc_length, target.z, target.final)], dtype=SEARCH_GOAL),
+        path=target.path_world - (*corner, 0.0, 0.0),
+        field=target.field,
         reference=_reference_places(reference, stance, first_side, parameters.reference_steps) - corner,
         feet=np.array([_foot(stance, side, corner) for side in (first_side.opposite, first_side)]),
         lattice=lattice.record(),
@@ -82,12 +77,13 @@ def _reference_places(reference: FootstepPlan | None, stance: Stance, first_side
     return places
 
 
-def _step_limits(parameters: FootstepParameters) -> NDArray[np.void]:
+def step_limits(parameters: FootstepParameters) -> NDArray[np.void]:
     """Limits, costs and settings, as the search takes them: one `STEP_LIMITS`."""
     turn = max(parameters.inward_yaw, parameters.outward_yaw)
     derived = {
         "half_length": 0.5 * parameters.sole_length,
         "half_width": 0.5 * parameters.sole_width,
+        "tilt_tangent": np.tan(parameters.tilt),
         "uphill_tangent": np.tan(parameters.uphill_slope),
         # The body beside a foot moves on by the reach, and a little more where the foot turns.
         "stride": parameters.reach + 0.5 * parameters.ideal_width * turn,

@@ -5,14 +5,14 @@ Kernels take it whole, as one named tuple over plain and structured arrays that 
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, TypeAlias
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from skills.footsteps.plane_raster import Raster
+from skills.footsteps.records import Records
 from skills.geometry.pose import Array
-
-Records: TypeAlias = Any  # structured arrays, or one element of them
 
 # Fields are named after the parameters; the half sizes, uphill_tangent, heading (angle
 # between two), stride and turn (the most of a step) come from them.
@@ -23,15 +23,19 @@ STEP_LIMITS = np.dtype(
             *("half_length", "half_width", "reach", "reach_up", "reach_up_height", "reach_down", "reach_down_height"),
             *("back_reach", "minimum_width", "ideal_width", "maximum_width", "sole_gap", "height_change"),
             *("inward_yaw", "outward_yaw", "uphill_drop", "uphill_tangent", "swing_reach", "swing_height_change"),
+            *("body_width", "body_depth", "body_base", "body_top", "step_over"),
             *("step_cost", "height_cost", "tilt_cost", "yaw_cost", "width_cost", "path_cost", "share_cost"),
             *("reference_cost", "lattice", "heading", "stride", "turn", "heuristic_weight", "minimum_steps"),
             *("along_tolerance", "across_tolerance", "heading_tolerance", "goal_tolerance", "goal_yaw_tolerance"),
+            *("goal_height_tolerance", "final_turn", "field_cell", "tilt_tangent"),
         )
     ]
 )
-SEARCH_GOAL = np.dtype([("arc_length", np.float64), ("final", np.bool_)])
-# Numbers of headings, rows and columns, those of the stance foot, and how many nodes one side has.
-LATTICE = np.dtype([(name, np.int64) for name in ("headings", "ny", "nx", "heading", "iy", "ix", "stances")])
+SEARCH_GOAL = np.dtype([("arc_length", np.float64), ("z", np.float64), ("final", np.bool_)])
+# Numbers of floors, headings, rows and columns, those of the stance foot, and how many nodes one side has.
+LATTICE = np.dtype(
+    [(name, np.int64) for name in ("floors", "headings", "ny", "nx", "floor", "heading", "iy", "ix", "stances")]
+)
 # A foot on the lattice: cost of the way there, estimated cost to go, what being off the path costs, and the way back.
 NODE = np.dtype(
     [
@@ -56,18 +60,17 @@ STAND = np.dtype(
 class SearchSpace(NamedTuple):
     """What a search works on; x and y are measured from the corner of the raster [m].
 
-    A node is ((side * headings + heading) * ny + iy) * nx + ix; side 0 is left, and the node past the last is the
-    swing foot where it is now. In this order a search, which uses few headings, touches little memory.
+    A node is (((side * floors + floor) * headings + heading) * ny + iy) * nx + ix; side 0 is left, and the node past
+    the last is the swing foot where it is now. In this order a search, which uses few headings, touches little memory.
 
     Attributes:
-        cells: raster of plane indices, (rows, columns).
-        planes: its planes, (P, 3).
-        resolution: its cell size [m].
+        raster: ground and walls.
         snap_limits: one `SNAP_LIMITS`.
         samples: where a sole feels the ground, (N, 2).
         limits: one `STEP_LIMITS`.
         goal: one `SEARCH_GOAL`.
         path: (N, 4) rows of x, y, heading, arc length.
+        field: how far the goal is, see `goal_field`; empty where a path leads there.
         reference: (K, 2) places of the first steps in the plan before, NaN where there is none.
         feet: (2, 7) stance foot, then swing foot: x, y, z, heading, slopes a and b, side (+1 left).
         lattice: one `LATTICE`.
@@ -81,14 +84,13 @@ class SearchSpace(NamedTuple):
         rejections: counts by reason, added to.
     """
 
-    cells: NDArray[np.int32]
-    planes: Array
-    resolution: float
+    raster: Raster
     snap_limits: Records
     samples: Array
     limits: Records
     goal: Records
     path: Array
+    field: Array
     reference: Array
     feet: Array
     lattice: Records

@@ -36,9 +36,9 @@ def swing_clearance(
 ) -> SwingClearance:
     """Find the way of a foot between two footholds that clears the ground by the parameters' margin."""
     start, end = T_world_start.p, T_world_end.p
-    crossing = _crossing(T_world_start, T_world_end, 2.0 * terrain.resolution)
-    ground = -_clearances(terrain, crossing, parameters, parameters.swing_margin)
     higher = max(start[2], end[2])
+    crossing = _crossing(T_world_start, T_world_end, higher, 2.0 * terrain.raster.resolution)
+    ground = higher - _clearances(terrain, crossing, parameters, parameters.swing_margin)
     apex = max(float(np.max(ground)) + parameters.swing_clearance, higher + parameters.swing_height)
     travelled = np.linalg.norm(crossing[:, :2] - start[:2], axis=1)
     left = np.linalg.norm(crossing[:, :2] - end[:2], axis=1)
@@ -59,7 +59,7 @@ def _corner(
     leads = () if vertical else (parameters.swing_lead, 0.5 * parameters.swing_lead)
     for lead in leads:
         corner = np.array((*(near[:2] + lead * (far[:2] - near[:2])), apex))
-        leg = _leg(T_world_near, T_world_far, corner, terrain.resolution)
+        leg = _leg(T_world_near, T_world_far, corner, terrain.raster.resolution)
         risen = leg[:, 2] - near[2]
         needed = np.minimum(parameters.swing_leg_clearance, 0.5 * risen - parameters.ground_above)
         if np.all(_clearances(terrain, leg, parameters, 0.0) >= needed):
@@ -77,12 +77,13 @@ def _leg(T_world_near: Pose, T_world_far: Pose, corner_world: Array, spacing: fl
     return np.hstack((near + fraction * (corner_world - near), yaw, (1.0 - fraction) * np.array(slopes(T_world_near))))
 
 
-def _crossing(T_world_start: Pose, T_world_end: Pose, spacing: float) -> Array:
-    """Level soles at height 0 from above one foothold to above the other, (N, 6)."""
+def _crossing(T_world_start: Pose, T_world_end: Pose, height: float, spacing: float) -> Array:
+    """Level soles at one height from above one foothold to above the other, (N, 6)."""
     way = T_world_end.p[:2] - T_world_start.p[:2]
     fraction = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(way) / spacing))[:, None]
     yaw = T_world_start.yaw + fraction * wrap_angle(T_world_end.yaw - T_world_start.yaw)
-    return np.hstack((T_world_start.p[:2] + fraction * way, np.zeros_like(fraction), yaw, np.zeros((len(fraction), 2))))
+    heights, level = np.full_like(fraction, height), np.zeros((len(fraction), 2))
+    return np.hstack((T_world_start.p[:2] + fraction * way, heights, yaw, level))
 
 
 def _clearances(terrain: Terrain, soles: Array, parameters: FootstepParameters, margin: float) -> Array:

@@ -14,19 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
-from skills.footsteps.plane_raster import (
-    SNAP_LIMITS,
-    SNAP_REASONS,
-    close_seams,
-    draw_regions,
-    plane_heights,
-    snap_sole,
-    sole_samples,
-    sweep_soles,
-)
+from skills.footsteps.plane_raster import Raster, close_seams, draw_regions, plane_heights
+from skills.footsteps.sole_snap import NO_GROUND, SNAP_LIMITS, SNAP_REASONS, snap_sole, sole_samples, sweep_soles
+from skills.footsteps.walls import draw_walls
 from skills.geometry.polygon import convex_hull
 from skills.geometry.pose import Array, Pose, readonly
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
+
+_MOST_FLOORS = 4
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,7 +47,7 @@ class Foothold:
 class Terrain(Protocol):
     """Ground to put feet on.
 
-    The search reads `cells` and `planes` itself: a terrain is whatever can be drawn into them.
+    The search reads `raster` itself: a terrain is whatever can be drawn into it.
     """
 
     @property
@@ -66,22 +61,19 @@ class Terrain(Protocol):
         ...
 
     @property
-    def resolution(self) -> float:
-        """Cell size [m]."""
+    def raster(self) -> Raster:
+        """Ground and walls."""
         ...
 
-    @property
-    def cells(self) -> NDArray[np.int32]:
-        """Index of the plane that is the ground in a cell, (ny, nx); -1 where none is known."""
+    def floor(self, p_world: Array) -> int:
+        """Which layer of the raster is the ground nearest to a point; 0 where there is none under it."""
         ...
 
-    @property
-    def planes(self) -> Array:
-        """Planes z = a x + b y + c with x and y from the corner, (P, 3)."""
-        ...
+    def snap(self, x: float, y: float, yaw: float, parameters: FootstepParameters, z: float = np.inf) -> Foothold:
+        """Put a sole on the ground: its pose, and whether it may stand there.
 
-    def snap(self, x: float, y: float, yaw: float, parameters: FootstepParameters) -> Foothold:
-        """Put a sole on the ground: its pose, and whether it may stand there."""
+        Where floors lie above each other it is the one nearest to the height z, without it the highest.
+        """
         ...
 
     def foothold_polygon(self, T_world_sole: Pose, parameters: FootstepParameters) -> Array:
@@ -89,11 +81,14 @@ class Terrain(Protocol):
         ...
 
     def heights(self, points_world: Array) -> Array:
-        """Height of the ground under points (N, 2 or 3), (N,) [m]; NaN where none is known."""
+        """Height of the ground under points (N, 2 or 3), (N,) [m]; NaN where none is known.
+
+        Where floors lie above each other it is the one under z, without z the highest.
+        """
         ...
 
     def clearances(self, soles_world: Array, half_length: float, half_width: float) -> Array:
-        """Smallest height of each sole above the ground under it, (N,) [m]; +inf where none is known.
+        """Smallest height of each sole above ground and walls under it, (N,) [m]; +inf where none are known.
 
         Args:
             soles_world: (N, 6) rows x, y, z, yaw of the sole's centre, slopes dz/dx and dz/dy of the sole.
@@ -109,21 +104,34 @@ class RegionTerrain:
 
     frame_id: int
     corner_world: Array
-    resolution: float
-    cells: NDArray[np.int32]
-    planes: Array
+    raster: Raster
 
-    def snap(self, x: float, y: float, yaw: float, parameters: FootstepParameters) -> Foothold:
+    def floor(self, p_world: Array) -> int:
+        """Which layer of the raster is the ground nearest to a point; 0 where there is none under it."""
+        x, y = p_world[:2] - self.corner_world
+        cells, resolution = self.raster.cells, self.raster.resolution
+        iy, ix = int(np.floor(y / resolution)), int(np.floor(x / resolution))
+        if not (0 <= iy < cells.shape[1] and 0 <= ix < cells.shape[2]):
+            return 0
+        planes = self.raster.planes @ (x, y, 1.0)
+        off = [abs(planes[plane] - p_world[2]) if plane >= 0 else np.inf for plane in cells[:, iy, ix]]
+        return int(np.argmin(off))
+
+    def snap(self, x: float, y: float, yaw: float, parameters: FootstepParameters, z: float = np.inf) -> Foothold:
         """Put a sole on the ground: its pose, and whether it may stand there."""
         x, y, yaw = float(x), float(y), float(yaw)
-        found = np.full(4, np.nan)
-        from_corner = np.array((x, y)) - self.corner_world
         limits, samples = foothold_rules(parameters)
-        x_corner, y_corner = (float(n) for n in from_corner)
-        outcome = snap_sole(self.cells, self.planes, self.resolution, limits, samples, x_corner, y_corner, yaw, found)
-        z, a, b, share = found
-        T_world_sole = None if np.isnan(z) else sole_on_slope(x, y, z, yaw, a, b)
-        return Foothold(T_world_sole, 0.0 if np.isnan(share) else float(share), SNAP_REASONS[outcome])
+        x_corner, y_corner = (float(n) for n in np.array((x, y)) - self.corner_world)
+        best, least = Foothold(None, 0.0, SNAP_REASONS[NO_GROUND]), np.inf
+        for floor in range(self.raster.cells.shape[0]):
+            found = np.full(4, np.nan)
+            outcome = snap_sole(self.raster, floor, limits, samples, x_corner, y_corner, yaw, found)
+            height, a, b, share = found
+            off = -height if np.isinf(z) else abs(height - z)
+            if off < least:
+                T_world_sole = sole_on_slope(x, y, height, yaw, a, b)
+                best, least = Foothold(T_world_sole, float(share), SNAP_REASONS[outcome]), off
+        return best
 
     def foothold_polygon(self, T_world_sole: Pose, parameters: FootstepParameters) -> Array:
         """Supported part of a sole, (N, 2) convex polygon in the sole frame, counter-clockwise [m]."""
@@ -137,21 +145,18 @@ class RegionTerrain:
 
     def heights(self, points_world: Array) -> Array:
         """Height of the ground under points (N, 2 or 3), (N,) [m]; NaN where none is known."""
-        return plane_heights(self.cells, self.planes, self.resolution, self.corner_world, points_world)
+        points = np.full((len(points_world), 3), np.inf)
+        points[:, : points_world.shape[1]] = points_world
+        points[:, :2] -= self.corner_world
+        heights = np.empty(len(points))
+        plane_heights(self.raster, points, heights)
+        return heights
 
     def clearances(self, soles_world: Array, half_length: float, half_width: float) -> Array:
-        """Smallest height of each sole above the ground under it, (N,) [m]; +inf where none is known."""
+        """Smallest height of each sole above ground and walls under it, (N,) [m]; +inf where none are known."""
         smallest = np.empty(len(soles_world))
-        sweep_soles(
-            self.cells,
-            self.planes,
-            self.resolution,
-            self.corner_world,
-            half_length,
-            half_width,
-            np.ascontiguousarray(soles_world),
-            smallest,
-        )
+        soles = np.ascontiguousarray(soles_world)
+        sweep_soles(self.raster, self.corner_world, half_length, half_width, soles, smallest)
         return smallest
 
 
@@ -160,7 +165,8 @@ def region_terrain(
 ) -> RegionTerrain:
     """Draw regions into a raster of planes between two corners.
 
-    Of overlapping regions the later wins a cell, of two with the same time the higher one. Walls are left out.
+    Of regions that overlap on one floor the later wins a cell, of two with the same time the higher one. Regions too
+    steep to stand on are walls.
 
     Args:
         regions: planar regions in the world.
@@ -170,34 +176,61 @@ def region_terrain(
     """
     resolution = float(parameters.resolution)
     low = readonly(np.floor(np.asarray(low_world, dtype=np.float64) / resolution) * resolution, (2,))
-    nx, ny = (int(n) for n in np.ceil((np.asarray(high_world) - low) / resolution))
-    cells = np.full((max(ny, 1), max(nx, 1)), -1, dtype=np.int32)
+    nx, ny = (max(1, int(n)) for n in np.ceil((np.asarray(high_world) - low) / resolution))
     steepest = np.cos(parameters.steepest_region)
     ground = [region for region in regions.regions if region.T_world_region.R[2, 2] > steepest]
-    planes = np.zeros((len(ground), 3))
+    steep = [region for region in regions.regions if abs(region.T_world_region.R[2, 2]) <= steepest]
+    cells, planes = _draw(ground, low, resolution, (ny, nx))
     if ground:
-        _draw(ground, low, resolution, cells, planes)
-        cells = close_seams(cells, planes, resolution, float(parameters.seam_width), float(parameters.seam_step))
-    cells.flags.writeable = False
-    return RegionTerrain(regions.frame_id, low, resolution, cells, readonly(planes))
+        width, step = float(parameters.seam_width), float(parameters.seam_step)
+        cells = np.stack([close_seams(floor, planes, resolution, width, step) for floor in cells])
+    walls = _draw_walls(steep, low, float(parameters.wall_resolution), np.asarray(high_world) - low)
+    for array in (cells, planes, walls):
+        array.flags.writeable = False
+    return RegionTerrain(regions.frame_id, low, Raster(cells, planes, resolution, walls, parameters.wall_resolution))
 
 
 def _draw(
-    ground: list[PlanarRegion], corner: Array, resolution: float, cells: NDArray[np.int32], planes: Array
-) -> None:
+    ground: list[PlanarRegion], corner: Array, resolution: float, shape: tuple[int, int]
+) -> tuple[NDArray[np.int32], Array]:
+    """Cells (floors, ny, nx) and planes; as many layers of cells as there are floors above each other."""
+    planes = np.zeros((len(ground), 3))
     rings = [(i, ring) for i, region in enumerate(ground) for ring in (region.hull_region, *region.holes_region)]
-    draw_regions(
-        np.concatenate([ring for _, ring in rings]),
-        np.cumsum([0] + [len(ring) for _, ring in rings]),
-        np.array([i for i, _ in rings]),
-        np.array([region.T_world_region.R for region in ground]),
-        np.array([region.T_world_region.p for region in ground]),
-        np.array([region.time for region in ground], dtype=np.float64),
-        corner,
-        resolution,
-        cells,
-        planes,
-    )
+    vertices = np.concatenate([ring for _, ring in rings]) if rings else np.zeros((0, 2))
+    starts = np.cumsum([0] + [len(ring) for _, ring in rings])
+    owners = np.array([i for i, _ in rings], dtype=np.int64)
+    rotations = np.array([region.T_world_region.R for region in ground]).reshape(-1, 3, 3)
+    origins = np.array([region.T_world_region.p for region in ground]).reshape(-1, 3)
+    times = np.array([region.time for region in ground], dtype=np.float64)
+    cells = np.empty((0, *shape), dtype=np.int32)
+    more_floors = 1
+    while more_floors and len(cells) < _MOST_FLOORS:
+        layer = np.full(shape, -1, dtype=np.int32)
+        more_floors = draw_regions(
+            vertices, starts, owners, rotations, origins, times, corner, resolution, cells, layer, planes
+        )
+        cells = np.concatenate((cells, layer[None]))
+    return cells, planes
+
+
+def _draw_walls(steep: list[PlanarRegion], corner: Array, resolution: float, size: Array) -> NDArray[np.float32]:
+    """Lowest and highest points of steep regions, (ny, nx, 2); empty where there are none."""
+    walled = [region for region in steep if len(region.hull_region) >= 3]
+    if not walled:
+        return np.zeros((0, 0, 2), dtype=np.float32)
+    R = np.array([region.T_world_region.R for region in walled])
+    level = np.stack((-R[:, 1, 2], R[:, 0, 2], np.zeros(len(R))), axis=1)
+    level /= np.linalg.norm(level, axis=1, keepdims=True)
+    frames = np.stack((level, np.cross(R[:, :, 2], level), R[:, :, 2]), axis=2)
+    turns = np.transpose(R[:, :, :2], (0, 2, 1)) @ frames[:, :, :2]
+    outlines = [region.hull_region @ turn for region, turn in zip(walled, turns, strict=True)]
+    origins = np.array([region.T_world_region.p for region in walled])
+    nx, ny = (max(1, int(n)) for n in np.ceil(size / resolution))
+    walls = np.empty((ny, nx, 2), dtype=np.float32)
+    walls[:, :, 0], walls[:, :, 1] = np.inf, -np.inf
+    starts = np.cumsum([0] + [len(outline) for outline in outlines])
+    draw_walls(np.concatenate(outlines), starts, readonly(frames), origins, corner, resolution, walls)
+    return walls
 
 
 def sole_on_slope(x: float, y: float, z: float, yaw: float, a: float, b: float) -> Pose:

@@ -123,7 +123,7 @@ def test_degenerate_and_vertical_regions_are_left_out():
     empty = PlanarRegion(Pose.identity(), np.zeros((0, 2)), (), 0.0, 0.0)
     wall = rectangle((0.0, 0.0, 0.5), (0.0, np.pi / 2, 0.0))
     broken = PlanarRegion(Pose(np.eye(3), np.full(3, np.nan)), np.array(((0, 0), (1, 0), (0, 1))), (), 0.5, 0.0)
-    assert np.all(terrain(sliver, empty, wall, broken).cells == -1)
+    assert np.all(terrain(sliver, empty, wall, broken).raster.cells == -1)
     nothing = region_terrain(PlanarRegions((), 0.0, 3), np.zeros(2), np.ones(2), TerrainParameters())
     assert nothing.frame_id == 3
     assert not nothing.snap(0.5, 0.5, 0.0, PARAMETERS).usable

@@ -1,0 +1,173 @@
+"""Kernels for a sole on a raster of planes: snap it to the ground, sweep it over the ground."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from skills.footsteps.plane_raster import Raster, floor_near
+from skills.footsteps.walls import wall_top
+from skills.geometry.pose import Array
+from skills.kernels import kernel
+
+UNSEEN, FOOTHOLD, NO_GROUND, TOO_STEEP, GROUND_ABOVE, TOO_SMALL, AT_CLIFF, AT_WALL = range(8)
+SNAP_REASONS = (
+    *("", "", "no ground", "too steep", "ground above the sole"),
+    *("foothold too small", "at a cliff", "at a wall"),
+)
+SAMPLE_SPACING = 0.01
+
+
+# What a sole may stand on, for the kernels: fields are named after the parameters; `under` counts the samples that lie
+# under the sole, `close` those and the ones right beside it.
+SNAP_LIMITS = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            *("tilt_tangent", "share", "support_below", "ground_above", "cliff_height"),
+            *("body_base", "under", "close"),
+        )
+    ]
+)
+
+
+@kernel
+def snap_sole(
+    raster: Raster,
+    floor: int,
+    snap_limits: NDArray[Any],
+    samples: Array,
+    x: float,
+    y: float,
+    yaw: float,
+    out: Array,
+) -> int:
+    """Put a level sole at x, y (from the corner), yaw on the plane of the cell under its centre.
+
+    Writes height, slopes a and b, and supported share into `out` (4,), as far as they are known when a reason against
+    the foothold is found; returns FOOTHOLD or that reason. `samples` (N, 2) are points of the sole, then of its
+    surroundings, see `sole_samples`.
+    """
+    limits = snap_limits[0]
+    cells, planes = raster.cells, raster.planes
+    floors, ny, nx = cells.shape
+    scale = 1.0 / raster.resolution
+    walled = raster.walls.shape[0] > 0
+    if x < 0.0 or y < 0.0 or x * scale >= nx or y * scale >= ny:
+        return NO_GROUND
+    ground = cells[floor, int(y * scale), int(x * scale)]
+    if ground < 0:
+        return NO_GROUND
+    a, b, c = planes[ground, 0], planes[ground, 1], planes[ground, 2]
+    out[0], out[1], out[2], out[3] = a * x + b * y + c, a, b, 1.0
+    if a * a + b * b > limits.tilt_tangent * limits.tilt_tangent:
+        return TOO_STEEP
+    cos, sin = np.cos(yaw), np.sin(yaw)
+    under, close = int(limits.under), int(limits.close)
+    unsupported = 0
+    for n in range(samples.shape[0]):
+        u, v = samples[n, 0], samples[n, 1]
+        px, py = x + cos * u - sin * v, y + sin * u + cos * v
+        there = -1
+        if px >= 0.0 and py >= 0.0 and px * scale < nx and py * scale < ny:
+            iy, ix = int(py * scale), int(px * scale)
+            there = cells[0, iy, ix]
+            if floors > 1:
+                there = floor_near(cells, planes, iy, ix, px, py, out[0])
+        if walled and wall_top(raster, px, py, out[0], limits.body_base) > out[0] + limits.cliff_height:
+            return AT_WALL
+        if there == ground:
+            continue
+        rise = -np.inf
+        if there >= 0:
+            rise = (planes[there, 0] - a) * px + (planes[there, 1] - b) * py + planes[there, 2] - c
+        if n >= close:
+            if rise > limits.cliff_height:
+                return AT_CLIFF
+        elif rise > limits.ground_above:
+            return GROUND_ABOVE
+        elif n < under and rise < -limits.support_below:
+            unsupported += 1
+            out[3] = 1.0 - unsupported / limits.under
+            if out[3] < limits.share:
+                return TOO_SMALL
+    return FOOTHOLD
+
+
+@kernel
+def sweep_soles(
+    raster: Raster,
+    corner: Array,
+    half_length: float,
+    half_width: float,
+    soles: Array,
+    clearances: Array,
+) -> None:
+    """Smallest height of each sole above the ground, or the wall, under it; +inf where no ground is known.
+
+    `soles` (N, 6) rows x, y, z, yaw of the centre in the world and slopes a, b; `clearances` (N,) is filled.
+    """
+    planes = raster.planes
+    floors, ny, nx = raster.cells.shape
+    scale = 1.0 / raster.resolution
+    walled = raster.walls.shape[0] > 0
+    along = int(np.ceil(2 * half_length / SAMPLE_SPACING))
+    across = int(np.ceil(2 * half_width / SAMPLE_SPACING))
+    for n in range(soles.shape[0]):
+        x, y = soles[n, 0] - corner[0], soles[n, 1] - corner[1]
+        cos, sin = np.cos(soles[n, 3]), np.sin(soles[n, 3])
+        smallest = np.inf
+        for i in range(along + 1):
+            u = half_length * (2 * i / along - 1)
+            for j in range(across + 1):
+                v = half_width * (2 * j / across - 1)
+                dx, dy = cos * u - sin * v, sin * u + cos * v
+                px, py = x + dx, y + dy
+                if px < 0.0 or py < 0.0 or px * scale >= nx or py * scale >= ny:
+                    continue
+                height = soles[n, 2] + soles[n, 4] * dx + soles[n, 5] * dy
+                iy, ix = int(py * scale), int(px * scale)
+                there = raster.cells[0, iy, ix]
+                if floors > 1:
+                    there = floor_near(raster.cells, planes, iy, ix, px, py, height)
+                if there >= 0:
+                    ground = planes[there, 0] * px + planes[there, 1] * py + planes[there, 2]
+                    smallest = min(smallest, height - ground)
+                if walled:
+                    smallest = min(smallest, height - wall_top(raster, px, py, height, 0.0))
+        clearances[n] = smallest
+
+
+def sole_samples(length: float, width: float, edge: float, toe: float, beside: float) -> tuple[Array, int, int]:
+    """Points at which a sole feels the ground: under it to its very edge, right beside it, and farther around it.
+
+    Args:
+        length: length of the sole [m].
+        width: its width [m].
+        edge: how far from the sole is right beside it [m].
+        toe: how far before the toe it feels for cliffs [m].
+        beside: how far behind the heel and beside the sides [m].
+
+    Returns:
+        Points in the sole frame, (N, 2), each kind from the outside in; how many are under it, and how many under it
+        or right beside it.
+    """
+    x = _stations(*(-0.5 * length - d for d in (beside, edge, 0.0)), *(0.5 * length + d for d in (0.0, edge, toe)))
+    y = _stations(*(-0.5 * width - d for d in (beside, edge, 0.0)), *(0.5 * width + d for d in (0.0, edge, beside)))
+    points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+    outside = np.max(np.abs(points) - (0.5 * length, 0.5 * width), axis=1)
+    kind = np.searchsorted((1e-9, edge + 1e-9), outside)
+    order = np.lexsort((-outside, kind))
+    return points[order], int(np.sum(kind == 0)), int(np.sum(kind <= 1))
+
+
+def _stations(*ends: float) -> Array:
+    """Coordinates from the first end to the last that hold all ends and lie no farther apart than the spacing."""
+    pieces = [
+        np.linspace(low, high, int(np.ceil((high - low) / SAMPLE_SPACING - 1e-9)), endpoint=False)
+        for low, high in pairwise(ends)
+    ]
+    return np.concatenate((*pieces, ends[-1:]))
