@@ -53,8 +53,8 @@ class Cells(NamedTuple):
     def points_world(self, cell: float, stride: int = 1) -> Array:
         """Every so many of the points, (N, 3) [m]."""
         places = np.column_stack((self.columns[::stride], self.rows[::stride])) + 0.5
-        points = np.column_stack((cell * places, self.heights[::stride].astype(np.float64)))
-        return T_RASTER_WORLD.inverse @ points
+        points = np.column_stack((cell * places, self.heights[::stride]))
+        return T_RASTER_WORLD.inverse @ points.astype(np.float64)
 
 
 _NO_CELLS = Cells(np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0, np.float32), np.zeros(1, np.int64))
