@@ -33,7 +33,7 @@ def _source_hash() -> str:
     for folder in _KERNEL_FOLDERS:
         for source in sorted((root / folder).rglob("*.py")):
             text = source.read_bytes()
-            if b"@kernel" in text:
+            if b"skills.kernels" in text:
                 digest.update(str(source.relative_to(root)).encode())
                 digest.update(text)
     return digest.hexdigest()
@@ -47,3 +47,13 @@ def kernel(function: F) -> F:
     import numba
 
     return numba.njit(cache=True, nogil=True, fastmath=False, error_model="numpy")(function)  # type: ignore[return-value]
+
+
+def leaf_kernel(function: F) -> F:
+    """The same for a function that makes no arrays, as one that others call in their loops.
+
+    It goes without counting references to its arrays, which costs more than a short loop does.
+    """
+    import numba
+
+    return numba.njit(cache=True, nogil=True, fastmath=False, error_model="numpy", _nrt=False)(function)  # type: ignore[return-value]

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import kernel, leaf_kernel
 from skills.regions.noise_level import depth_noise
 from skills.regions.parameters import RegionParameters
 from skills.regions.patches import SUMS, Patches, fit_plane, misfit, off_plane
@@ -40,35 +40,49 @@ def grow_regions(patches: Patches, parameters: RegionParameters) -> PatchRegions
     """Join patches into regions."""
     p, pixels = parameters, patches.size**2
     labels = np.full(patches.sigma.shape, -1, dtype=np.int32)
-    order = np.argsort(patches.sigma, axis=None, kind="stable")[: np.count_nonzero(np.isfinite(patches.sigma))]
+    order = _flattest_first(patches.sigma)
     capacity = labels.size // p.patches_min + 1
     sums, planes = np.zeros((capacity, SUMS)), np.zeros((capacity, 3))
     limits = np.array((p.link_angle, p.link_offset, p.grow_angle, p.grow_offset))
-    count = _grow(patches.sums, patches.facets, order, limits, p.patches_min, labels, sums, planes)
-    _fill(patches.sums, patches.facets, planes, p.fill_offset, labels)
+    queue, seen, face = np.empty(labels.size, np.int64), np.zeros(labels.shape, np.int32), np.empty(4)
+    work = (queue, seen, face)
+    count = _grow(patches.sums, patches.facets, order, limits, p.patches_min, *work, labels, sums, planes)
+    _fill(patches.sums, patches.facets, planes, p.fill_offset, queue, labels)
     merging = (p.merge_offset, p.noise_factor)
     count = _merge(labels, count, *merging, patches.noise.law, pixels, sums, planes)
     count = split_regions(patches.sums, patches.facets, labels, count, *merging, p.patches_min, sums, planes)
     return PatchRegions(labels, planes[:count])
 
 
-@kernel
+def _flattest_first(sigma: Array) -> NDArray[np.int64]:
+    """Indices of the patches that have a plane, by their spread about it.
+
+    Floats that are not negative sort like the integers of the same bits. The last bits make room for the index, so no
+    two are equal and the fastest sort is stable.
+    """
+    mask = (1 << sigma.size.bit_length()) - 1
+    bits = np.ascontiguousarray(sigma).reshape(-1).view(np.int64)
+    found = np.flatnonzero(np.isfinite(sigma))
+    return np.sort((bits[found] & ~mask) | found) & mask
+
+
+@leaf_kernel
 def _grow(
     patch_sums: Array,
     facets: Array,
     order: NDArray[np.int64],
     limits: Array,
     patches_min: int,
+    queue: NDArray[np.int64],
+    seen: Labels,
+    face: Array,
     labels: Labels,
     sums: Array,
     planes: Array,
 ) -> int:
-    """Label patches region by region; the number of regions."""
+    """Label patches region by region; the number of regions. Seen is the last seed, from 1, that reached a patch."""
     rows, columns = labels.shape
-    queue = np.empty(rows * columns, np.int64)
-    seen = np.zeros((rows, columns), np.int32)  # the last seed, counted from 1, that reached a patch
     link_angle, link_offset, grow_angle, grow_offset = limits
-    face = np.empty(4)
     count = 0
     for seed in range(order.shape[0]):
         row, column = order[seed] // columns, order[seed] % columns
@@ -136,7 +150,7 @@ def _grow(
     return count
 
 
-@kernel
+@leaf_kernel
 def _set_face(plane: Array, face: Array) -> None:
     """Unit normal and distance of a plane."""
     face[3] = 1.0 / np.sqrt(plane[0] ** 2 + plane[1] ** 2 + plane[2] ** 2)
@@ -144,23 +158,24 @@ def _set_face(plane: Array, face: Array) -> None:
         face[k] = plane[k] * face[3]
 
 
-@kernel
+@leaf_kernel
 def _off(facet: Array, face: Array) -> float:
     """Distance of a patch's mean from a plane, positive behind it [m]."""
     return face[0] * facet[4] + face[1] * facet[5] + face[2] * facet[6] - face[3]
 
 
-@kernel
+@leaf_kernel
 def _turned(facet: Array, face: Array) -> float:
     """Square of the angle between two normals, for angles well below 1 rad."""
     return 2.0 - 2.0 * (face[0] * facet[0] + face[1] * facet[1] + face[2] * facet[2])
 
 
-@kernel
-def _fill(patch_sums: Array, facets: Array, planes: Array, offset: float, labels: Labels) -> None:
+@leaf_kernel
+def _fill(
+    patch_sums: Array, facets: Array, planes: Array, offset: float, queue: NDArray[np.int64], labels: Labels
+) -> None:
     """Give patches without a region that of a neighbour whose plane they lie in, outwards from the regions."""
     rows, columns = labels.shape
-    queue = np.empty(rows * columns, np.int64)
     tail = 0
     for row in range(rows):
         for column in range(columns):

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import leaf_kernel
 
 _STRIDE = 5  # every fifth row of patches is looked at
 _RANGE = 1.25  # ratio of the bounds of a range of depths
@@ -94,7 +94,7 @@ def _law(rows: list[tuple[int, float, float]]) -> tuple[float, float]:
     return float(sigma_mean - g * square_mean), float(g)
 
 
-@kernel
+@leaf_kernel
 def _probe(sums: Array, pixels_min: float, depth: Array, white: Array, second: Array) -> int:
     """Depth and spread of the patches of some rows, and how far each one's mean is off those beside it; their number.
 
@@ -132,7 +132,7 @@ def _probe(sums: Array, pixels_min: float, depth: Array, white: Array, second: A
     return count
 
 
-@kernel
+@leaf_kernel
 def depth_noise(law: Array, depth: float, pixels: float) -> float:
     """Standard deviation of the mean measured depth of neighbouring pixels, that many of them [m]."""
     square = depth * depth

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import kernel, leaf_kernel
 
 Labels = NDArray[np.int16]
 Indices = NDArray[np.int64]
@@ -131,7 +131,7 @@ def _grown(rows: Any) -> Any:
     return grown
 
 
-@kernel
+@leaf_kernel
 def _has(labels: Labels, x: int, y: int, label: int) -> bool:
     """Whether a pixel is in the image and has a label."""
     return 0 <= x < labels.shape[1] and 0 <= y < labels.shape[0] and labels[y, x] == label

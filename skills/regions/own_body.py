@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from skills.geometry.camera import DepthImage, PinholeCamera
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import leaf_kernel
 
 
 def without_body(image: DepthImage) -> DepthImage:
@@ -51,7 +51,7 @@ def _boxes(starts: Array, ends: Array, radii: Array, camera: PinholeCamera) -> N
     return np.column_stack((v0, u0, v1, u1)).astype(np.int64)
 
 
-@kernel
+@leaf_kernel
 def _erase(
     depth: NDArray[np.float32],
     lens: NDArray[np.float32],

@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 
 from skills.geometry.camera import DepthImage, PinholeCamera
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import leaf_kernel
 from skills.regions.noise_level import NoiseLevel, depth_noise, estimate_noise
 from skills.regions.parameters import RegionParameters
 
 SUMS = 10
 N, X, Y, W, XX, XY, YY, XW, YW, WW = range(SUMS)
 FACET = 9
+_STRETCH = 32  # windows of a row that are fitted together, where one of them has enough pixels
 LANES = 64  # columns of pixels that are summed side by side; the largest patch is no wider
 _L1, _L2, _L3, _L4, _L5 = (np.uint64(k * LANES) for k in range(1, 6))
 _FILLED_MIN = 0.25  # patches with a smaller share of valid pixels get no plane
@@ -65,7 +66,8 @@ def fit_patches(image: DepthImage, parameters: RegionParameters, noise: NoiseLev
     camera = image.camera
     size = patch_size(camera, parameters)
     sums = np.zeros((-(-camera.height // size), -(-camera.width // size), SUMS))
-    _sum_patches(image.depth, intrinsics(camera), camera.near, min(camera.far, parameters.depth_max), size, sums)
+    far, work = min(camera.far, parameters.depth_max), np.empty((7, LANES), np.float32)
+    _sum_patches(image.depth, intrinsics(camera), camera.near, far, size, work[:6].reshape(-1), work[6], sums)
     edge = float(size / np.sqrt(camera.fx * camera.fy))
     nothing = np.empty((0, 0, 0))
     patches = Patches(size, edge, sums, nothing, nothing, noise or estimate_noise(sums, size**2))
@@ -78,7 +80,10 @@ def fit_facets(patches: Patches, sums: Array, parameters: RegionParameters) -> P
     facets = np.full((rows, columns, FACET), np.nan)
     sigma = np.full((rows, columns), np.inf)
     limits = np.array((parameters.noise_factor, parameters.pixel_offset, parameters.grow_offset))
-    _fit_facets(sums, patches.noise.law, patches.size**2, patches.edge, limits, facets, sigma)
+    fits, down, best = np.empty((3, rows, columns)), np.empty((10, columns)), np.empty((2, columns))
+    spread = np.full((rows + 2, columns + 2), np.inf)  # with a border
+    law, pixels = patches.noise.law, patches.size**2
+    _fit_facets(sums, law, pixels, patches.edge, limits, fits, spread, down, best[0], best[1], facets, sigma)
     return replace(patches, sums=sums, facets=facets, sigma=sigma)
 
 
@@ -94,11 +99,19 @@ def intrinsics(camera: PinholeCamera) -> Array:
     return np.array([camera.fx, camera.fy, camera.cx, camera.cy])
 
 
-@kernel
-def _sum_patches(depth: NDArray[np.float32], lens: Array, near: float, far: float, size: int, sums: Array) -> None:
+@leaf_kernel
+def _sum_patches(
+    depth: NDArray[np.float32],
+    lens: Array,
+    near: float,
+    far: float,
+    size: int,
+    lanes: NDArray[np.float32],
+    reference: NDArray[np.float32],
+    sums: Array,
+) -> None:
     """Sum down the columns of some patches side by side first: that loop runs over neighbouring pixels, in vectors."""
     height, width = depth.shape
-    lanes, reference = np.empty(6 * LANES, np.float32), np.empty(LANES, np.float32)
     nearest, farthest = np.float32(near), np.float32(far)
     one, zero = np.float32(1.0), np.float32(0.0)
     chunk = LANES // size * size
@@ -115,6 +128,19 @@ def _sum_patches(depth: NDArray[np.float32], lens: Array, near: float, far: floa
                     reference[k] = w
             for k in range(6 * LANES):
                 lanes[k] = zero
+            if _all_valid(depth, v0, v1, left, wide, nearest, farthest):
+                for v in range(v0, v1):
+                    line, i = depth[v], np.float32(v - v0)
+                    for j in range(wide):
+                        off = one / line[first + np.uint64(j)] - reference[j]
+                        lanes[3 * LANES + j] += off
+                        lanes[4 * LANES + j] += i * off
+                        lanes[5 * LANES + j] += off * off
+                for j in range(0, wide, size):
+                    stop = min(j + size, wide)
+                    w, s = np.float64(reference[j]), sums[row, (left + j) // size]
+                    _add_full_lanes(lanes, j, stop, v1 - v0, left + j, v0, lens, w, s)
+                continue
             for v in range(v0, v1):
                 line, i = depth[v], np.float32(v - v0)
                 for j in range(wide):
@@ -133,7 +159,21 @@ def _sum_patches(depth: NDArray[np.float32], lens: Array, near: float, far: floa
                 add_lanes(lanes, j, stop, left + j, v0, lens, np.float64(reference[j]), sums[row, (left + j) // size])
 
 
-@kernel
+@leaf_kernel
+def _all_valid(
+    depth: NDArray[np.float32], v0: int, v1: int, left: int, wide: int, nearest: np.float32, farthest: np.float32
+) -> bool:
+    """Whether no pixel of a box is too near, too far or without depth."""
+    first, valid = np.uint64(left), True
+    for v in range(v0, v1):
+        line = depth[v]
+        for j in range(wide):
+            z = line[first + np.uint64(j)]
+            valid &= (z >= nearest) & (z <= farthest)
+    return valid
+
+
+@leaf_kernel
 def add_lanes(
     lanes: NDArray[np.float32], start: int, stop: int, left: int, top: int, lens: Array, reference: float, sums: Array
 ) -> None:
@@ -165,6 +205,57 @@ def add_lanes(
         jd += j * offs
         id1 += lanes[at + _L4]
         dd += lanes[at + _L5]
+    _add(n, jn, jjn, i1, ji1, i2, d, jd, id1, dd, left, top, lens, reference, sums)
+
+
+@leaf_kernel
+def _add_full_lanes(
+    lanes: NDArray[np.float32],
+    start: int,
+    stop: int,
+    rows: int,
+    left: int,
+    top: int,
+    lens: Array,
+    reference: float,
+    sums: Array,
+) -> None:
+    """The same where all pixels of so many rows are valid, which leaves little to add up."""
+    d, jd, id1, dd = 0.0, 0.0, 0.0, 0.0
+    first = np.uint64(start)
+    for k in range(stop - start):
+        at, j = first + np.uint64(k), np.float64(k)
+        off = np.float64(lanes[at + _L3])
+        d += off
+        jd += j * off
+        id1 += lanes[at + _L4]
+        dd += lanes[at + _L5]
+    wide, tall = np.float64(stop - start), np.float64(rows)
+    j1, i1 = 0.5 * wide * (wide - 1.0), 0.5 * tall * (tall - 1.0)
+    j2, i2 = j1 * (2.0 * wide - 1.0) / 3.0, i1 * (2.0 * tall - 1.0) / 3.0
+    n, jn, jjn = wide * tall, tall * j1, tall * j2
+    _add(n, jn, jjn, wide * i1, j1 * i1, wide * i2, d, jd, id1, dd, left, top, lens, reference, sums)
+
+
+@leaf_kernel
+def _add(
+    n: float,
+    jn: float,
+    jjn: float,
+    i1: float,
+    ji1: float,
+    i2: float,
+    d: float,
+    jd: float,
+    id1: float,
+    dd: float,
+    left: int,
+    top: int,
+    lens: Array,
+    reference: float,
+    sums: Array,
+) -> None:
+    """Turn sums over pixel offsets j, i and differences d, named by what they are sums of, to those over x, y, w."""
     dx, dy = 1.0 / lens[0], 1.0 / lens[1]
     x0, y0 = (left - lens[2]) * dx, (top - lens[3]) * dy
     x, y = x0 * n + dx * jn, y0 * n + dy * i1
@@ -180,7 +271,7 @@ def add_lanes(
     sums[9] += dd + reference * (2.0 * d + reference * n)
 
 
-@kernel
+@leaf_kernel
 def fit_plane(s: Array, plane: Array) -> float:
     """Write the least-squares plane of sums; its spread as a standard deviation [m], infinite where it has none."""
     n = s[0]
@@ -201,30 +292,41 @@ def fit_plane(s: Array, plane: Array) -> float:
     return np.sqrt(variance) / (w * length)
 
 
-@kernel
+@leaf_kernel
 def _fit_facets(
-    sums: Array, noise: Array, pixels: float, edge: float, limits: Array, facets: Array, sigma: Array
+    sums: Array,
+    noise: Array,
+    pixels: float,
+    edge: float,
+    limits: Array,
+    fits: Array,
+    spread: Array,
+    down: Array,
+    best: Array,
+    which: Array,
+    facets: Array,
+    sigma: Array,
 ) -> None:
     rows, columns = sums.shape[0], sums.shape[1]
-    fits = np.empty((3, rows, columns))
-    spread = np.full((rows + 2, columns + 2), np.inf)  # with a border
-    down = np.empty((10, columns))
-    best, which = np.empty(columns), np.empty(columns)
-    for row in range(rows):
-        if row > 0 and row < rows - 1:
+    for row in range(1, rows - 1):
+        for left in range(0, columns - 2, _STRETCH):
+            right = min(left + _STRETCH, columns - 2) + 2
             seen = 0.0
-            for column in range(columns):
+            for column in range(left, right):
+                seen = max(seen, sums[row - 1, column, 0], sums[row, column, 0], sums[row + 1, column, 0])
+            # Windows with enough pixels hold a patch that is at least half full.
+            if seen < 0.5 * pixels:
+                continue
+            for column in range(left, right):
                 for k in range(10):
                     down[k, column] = sums[row - 1, column, k] + sums[row, column, k] + sums[row + 1, column, k]
-                seen += down[0, column]
-            if seen > 0.0:
-                _fit_row(down, 4.5 * pixels, fits[0, row], fits[1, row], fits[2, row], spread[row + 1])
+            _fit_row(down, left, right, 4.5 * pixels, fits[0, row], fits[1, row], fits[2, row], spread[row + 1])
     for row in range(rows):
         seen = 0.0
         for column in range(columns):
             best[column], which[column] = np.inf, 0.0
-            seen += sums[row, column, 0]
-        if seen == 0.0:
+            seen = max(seen, sums[row, column, 0])
+        if seen < _FILLED_MIN * pixels:
             continue
         for i in range(3):
             for j in range(3):
@@ -249,10 +351,12 @@ def _fit_facets(
                 sigma[row, column] = best[column]
 
 
-@kernel
-def _fit_row(down: Array, pixels_min: float, a: Array, b: Array, c: Array, spread: Array) -> None:
-    """Fit planes to windows of three sums of columns; the same as `fit_plane`, in vectors."""
-    for k in range(1, down.shape[1] - 1):
+@leaf_kernel
+def _fit_row(
+    down: Array, left: int, right: int, pixels_min: float, a: Array, b: Array, c: Array, spread: Array
+) -> None:
+    """Fit planes to windows of three sums of columns from left to right; the same as `fit_plane`, in vectors."""
+    for k in range(left + 1, right - 1):
         n = down[0, k - 1] + down[0, k] + down[0, k + 1]
         r = 1.0 / n
         x = r * (down[1, k - 1] + down[1, k] + down[1, k + 1])
@@ -273,14 +377,14 @@ def _fit_row(down: Array, pixels_min: float, a: Array, b: Array, c: Array, sprea
         good = (n >= pixels_min) & (det > _ROUND_MIN * (xx + yy) * (xx + yy))
         a[k], b[k] = p, q
         spread[k + 1] = np.sqrt(variance) if good else np.inf
-    for k in range(1, down.shape[1] - 1):  # on its own, because vectors allow for few results
+    for k in range(left + 1, right - 1):  # on its own, because vectors allow for few results
         n = down[0, k - 1] + down[0, k] + down[0, k + 1]
         x = down[1, k - 1] + down[1, k] + down[1, k + 1]
         y = down[2, k - 1] + down[2, k] + down[2, k + 1]
         c[k] = (down[3, k - 1] + down[3, k] + down[3, k + 1] - a[k] * x - b[k] * y) / n
 
 
-@kernel
+@leaf_kernel
 def _choose(spread: Array, index: float, best: Array, which: Array) -> None:
     for k in range(best.shape[0]):
         better = spread[k] < best[k]
@@ -288,7 +392,7 @@ def _choose(spread: Array, index: float, best: Array, which: Array) -> None:
         which[k] = index if better else which[k]
 
 
-@kernel
+@leaf_kernel
 def off_plane(s: Array, plane: Array) -> float:
     """Signed distance of the mean point of sums from a plane [m], positive behind it."""
     w = s[3] / s[0]
@@ -296,7 +400,7 @@ def off_plane(s: Array, plane: Array) -> float:
     return ((a * s[1] + b * s[2]) / s[0] + c - w) / (w * np.sqrt(a * a + b * b + c * c))
 
 
-@kernel
+@leaf_kernel
 def misfit(s: Array, own: Array, other: Array) -> float:
     """Root mean square distance, over the pixels of sums, between their own plane and another [m]."""
     n = s[0]

@@ -13,17 +13,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import leaf_kernel
 from skills.regions.noise_level import depth_noise
 
 PixelLabels = NDArray[np.int16]
-LANES = 16  # pixels of a row that are worked on at a time
+PatchLine = NDArray[np.int32]
+LANES = 12  # pixels of a row that are worked on at a time: patches of eight with their windows
 RADIUS = 2  # of the window about a pixel [px]; its sums are written out for five columns and rows
 _VALID_MIN = 4.5  # a window with fewer valid pixels gives no label
 _BARE = 0.5  # share of the cap above which no plane fits: most of the window is elsewhere
 
 
-@kernel
 def label_pixels(
     depth: NDArray[np.float32],
     size: int,
@@ -34,7 +34,7 @@ def label_pixels(
     pixel_planes: NDArray[np.float32],
     inner: NDArray[np.bool_],
     labels: PixelLabels,
-    sure: PixelLabels,
+    bare: PixelLabels,
 ) -> None:
     """Label the pixels of all patches near the last layer of regions.
 
@@ -48,29 +48,76 @@ def label_pixels(
         pixel_planes: the same over pixels, w = a u + b v + c, (R, 3).
         inner: out, whether all of a patch is in one region.
         labels: out, region of each pixel; -1 for none.
-        sure: out, the same less the pixels at odds.
+        bare: out, 1 where a pixel has no label or is at odds, 0 elsewhere.
     """
+    layers, _, columns = patch_labels.shape
+    tall = size + 2 * RADIUS
+    _label(
+        depth,
+        size,
+        limits,
+        patch_sums,
+        patch_labels,
+        planes,
+        pixel_planes,
+        np.empty(9 * layers, np.int32),
+        np.empty((2, columns + 2), np.int32),
+        np.empty((2, layers, columns), np.int32),
+        np.zeros(tall * LANES, np.float32),
+        np.tile(np.arange(LANES, dtype=np.float32), tall),
+        np.repeat(np.arange(tall, dtype=np.float32), LANES),
+        np.zeros(tall * LANES, np.float32),
+        np.zeros(size * LANES + 2 * RADIUS, np.float32),
+        np.zeros((2, size * LANES), np.float32),
+        np.zeros(size * LANES, np.int16),
+        inner,
+        labels,
+        bare,
+    )
+
+
+@leaf_kernel
+def _label(
+    depth: NDArray[np.float32],
+    size: int,
+    limits: Array,
+    patch_sums: Array,
+    patch_labels: NDArray[np.int32],
+    planes: Array,
+    pixel_planes: NDArray[np.float32],
+    candidates: NDArray[np.int32],
+    work: NDArray[np.int32],
+    extremes: NDArray[np.int32],
+    block: NDArray[np.float32],
+    right: NDArray[np.float32],
+    down: NDArray[np.float32],
+    costs: NDArray[np.float32],
+    column_sums: NDArray[np.float32],
+    bounds: NDArray[np.float32],
+    chosen: PixelLabels,
+    inner: NDArray[np.bool_],
+    labels: PixelLabels,
+    bare: PixelLabels,
+) -> None:
+    """Blocks of a few rows of LANES pixels lie in memory in one piece, so that each loop over them runs in vectors."""
     layers, rows, columns = patch_labels.shape
     height, width = depth.shape
     near, far = np.float32(limits[0]), np.float32(limits[1])
-    candidates = np.empty(9 * layers, np.int32)
-    tall = size + 2 * RADIUS
-    # Blocks of a few rows of LANES pixels lie in memory in one piece, so that each loop over them runs in vectors.
-    block = np.zeros(tall * LANES, np.float32)
-    right, down = np.empty(tall * LANES, np.float32), np.empty(tall * LANES, np.float32)
-    for k in range(tall * LANES):
-        right[k], down[k] = k % LANES, k // LANES
-    costs = np.zeros(tall * LANES, np.float32)
-    column_sums = np.zeros(size * LANES + 2 * RADIUS, np.float32)
-    least, odd = np.zeros(size * LANES, np.float32), np.zeros(size * LANES, np.float32)
-    chosen = np.zeros(size * LANES, np.int16)
+    low, high, least, odd = extremes[0], extremes[1], bounds[0], bounds[1]
     for row in range(rows):
+        for layer in range(layers):
+            _survey(patch_labels[layer], row, work, low[layer], high[layer])
         for column in range(columns):
-            uniform, near_last = _survey(patch_labels, row, column)
-            if not near_last:
-                continue
+            lowest, highest = low[layers - 1, column], high[layers - 1, column]
+            uniform = lowest == highest
+            if layers > 1:
+                uniform &= (low[0, column] == high[0, column]) & ((lowest >= 0) != (low[0, column] >= 0))
             v0, u0 = row * size, column * size
             v1, u1 = min(v0 + size, height), min(u0 + size, width)
+            if highest < 0:
+                if layers == 1:
+                    _paint(bare, 1, v0, u0, v1, u1)
+                continue
             here = max(patch_labels[0, row, column], patch_labels[layers - 1, row, column])
             s = patch_sums[row, column]
             mean_depth = s[0] / s[3] if s[0] > 0.0 else limits[0]
@@ -85,7 +132,6 @@ def label_pixels(
             inner[row, column] = uniform
             if uniform:
                 _paint(labels, here, v0, u0, v1, u1)
-                _paint(sure, here, v0, u0, v1, u1)
                 continue
             for left in range(u0, u1, LANES - 2 * RADIUS):
                 _load(depth, v0 - RADIUS, left - RADIUS, near, far, block)
@@ -97,14 +143,14 @@ def label_pixels(
                 wide, first = min(LANES - 2 * RADIUS, u1 - left), np.uint64(left)
                 for v in range(v0, v1):
                     start = np.uint64((v - v0) * LANES)
-                    firm, doubted = labels[v], sure[v]
+                    label, doubt = labels[v], bare[v]
                     for j in range(wide):
                         k = start + np.uint64(j)
-                        firm[first + np.uint64(j)] = chosen[k]
-                        doubted[first + np.uint64(j)] = chosen[k] if least[k] < odd[k] else np.int16(-1)
+                        label[first + np.uint64(j)] = chosen[k]
+                        doubt[first + np.uint64(j)] = (chosen[k] < 0) | (least[k] >= odd[k])
 
 
-@kernel
+@leaf_kernel
 def _paint(labels: PixelLabels, label: int, v0: int, u0: int, v1: int, u1: int) -> None:
     value, first, wide = np.int16(label), np.uint64(u0), u1 - u0
     for v in range(v0, v1):
@@ -113,7 +159,7 @@ def _paint(labels: PixelLabels, label: int, v0: int, u0: int, v1: int, u1: int) 
             line[first + np.uint64(j)] = value
 
 
-@kernel
+@leaf_kernel
 def _spread_about(s: Array, plane: Array) -> float:
     """Mean square, over the pixels of sums, of the relative difference of inverse depth to a plane."""
     a, b, c = plane
@@ -122,7 +168,7 @@ def _spread_about(s: Array, plane: Array) -> float:
     return square / s[9]
 
 
-@kernel
+@leaf_kernel
 def _apart(
     candidates: NDArray[np.int32],
     count: int,
@@ -153,7 +199,7 @@ def _apart(
     return True
 
 
-@kernel
+@leaf_kernel
 def _misfits(limits: Array, depth: float) -> tuple[np.float32, np.float32, np.float32]:
     """Squares of relative depth error: the cap, the mean that leaves a pixel bare, the mean that puts it at odds."""
     offset, factor = limits[2], limits[3]
@@ -165,24 +211,23 @@ def _misfits(limits: Array, depth: float) -> tuple[np.float32, np.float32, np.fl
     return np.float32(cap * scale), np.float32(_BARE * cap * scale), np.float32(odd * scale)
 
 
-@kernel
-def _survey(patch_labels: NDArray[np.int32], row: int, column: int) -> tuple[bool, bool]:
-    """Whether all 3 x 3 patches around one have the same single region, and whether the last layer has one there."""
-    layers, rows, columns = patch_labels.shape
-    uniform, near_last = True, False
-    for layer in range(layers):
-        here = patch_labels[layer, row, column]
-        near_last = here >= 0
-        for i in range(max(row - 1, 0), min(row + 2, rows)):
-            line = patch_labels[layer, i]
-            for j in range(max(column - 1, 0), min(column + 2, columns)):
-                uniform &= line[j] == here
-                near_last |= line[j] >= 0
-    here, above = patch_labels[0, row, column], patch_labels[layers - 1, row, column]
-    return uniform and ((here >= 0) != (above >= 0) if layers > 1 else here >= 0), near_last
+@leaf_kernel
+def _survey(labels: NDArray[np.int32], row: int, work: NDArray[np.int32], low: PatchLine, high: PatchLine) -> None:
+    """Least and greatest region in the 3 x 3 patches around each one of a row; work is room for (2, columns + 2)."""
+    rows, columns = labels.shape
+    above, here, below = labels[max(row - 1, 0)], labels[row], labels[min(row + 1, rows - 1)]
+    least, greatest = work[0], work[1]
+    for j in range(columns):
+        least[j + 1] = min(above[j], here[j], below[j])
+        greatest[j + 1] = max(above[j], here[j], below[j])
+    least[0], greatest[0] = least[1], greatest[1]
+    least[columns + 1], greatest[columns + 1] = least[columns], greatest[columns]
+    for j in range(columns):
+        low[j] = min(least[j], least[j + 1], least[j + 2])
+        high[j] = max(greatest[j], greatest[j + 1], greatest[j + 2])
 
 
-@kernel
+@leaf_kernel
 def _candidates(patch_labels: NDArray[np.int32], row: int, column: int, candidates: NDArray[np.int32]) -> int:
     """List the regions in the 3 x 3 patches around one; their number."""
     layers, rows, columns = patch_labels.shape
@@ -200,7 +245,7 @@ def _candidates(patch_labels: NDArray[np.int32], row: int, column: int, candidat
     return count
 
 
-@kernel
+@leaf_kernel
 def _load(
     depth: NDArray[np.float32], top: int, left: int, near: np.float32, far: np.float32, block: NDArray[np.float32]
 ) -> None:
@@ -224,7 +269,7 @@ def _load(
                 block[first + j] = z if (z >= near) & (z <= far) else zero
 
 
-@kernel
+@leaf_kernel
 def _start(
     block: NDArray[np.float32],
     none: np.float32,
@@ -248,7 +293,7 @@ def _start(
         chosen[k] = bare
 
 
-@kernel
+@leaf_kernel
 def _compete(
     block: NDArray[np.float32],
     right: NDArray[np.float32],
@@ -279,7 +324,7 @@ def _compete(
         chosen[k] = mine if better else chosen[k]
 
 
-@kernel
+@leaf_kernel
 def _add_rows(costs: NDArray[np.float32], column_sums: NDArray[np.float32]) -> None:
     """Sums of five rows each."""
     for k in range(costs.shape[0] - 4 * LANES):

@@ -9,21 +9,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import leaf_kernel
 from skills.regions.patches import LANES, add_lanes
 from skills.regions.pixel_labels import PixelLabels
 
-_EROSION = 2  # pixels this near to another label are left out [px]
+EROSION = 2  # pixels this near to another label are left out [px]
 
 
-@kernel
+@leaf_kernel
 def sum_pixels(
     depth: NDArray[np.float32],
     labels: PixelLabels,
     wanted: int,
     box: tuple[int, int, int, int],
     lens: Array,
-    plane: NDArray[np.float32],
+    plane: tuple[np.float32, np.float32, np.float32],
     limits: tuple[float, float, float],
     lanes: NDArray[np.float32],
     sums: Array,
@@ -36,16 +36,16 @@ def sum_pixels(
         wanted: the label.
         box: rows and columns from (v0, u0) to, but not with, (v1, u1).
         lens: fx, fy, cx and cy.
-        plane: of the label, w = a u + b v + c over pixels, (3,).
+        plane: of the label, w = a u + b v + c over pixels.
         limits: nearest and farthest valid depth, and the relative error in depth above which a pixel is left out.
         lanes: room for work, (6 LANES,).
         sums: out, (10,).
     """
-    v0, u0, v1, u1 = max(box[0], _EROSION), max(box[1], _EROSION), box[2], box[3]
-    v1, u1 = min(v1, depth.shape[0] - _EROSION), min(u1, depth.shape[1] - _EROSION)
+    v0, u0, v1, u1 = max(box[0], EROSION), max(box[1], EROSION), box[2], box[3]
+    v1, u1 = min(v1, depth.shape[0] - EROSION), min(u1, depth.shape[1] - EROSION)
     near, far, tolerance = np.float32(limits[0]), np.float32(limits[1]), np.float32(limits[2])
     one, zero = np.float32(1.0), np.float32(0.0)
-    mine, beside = np.int16(wanted), np.uint64(_EROSION)
+    mine, beside = np.int16(wanted), np.uint64(EROSION)
     a, b, c = plane
     for left in range(u0, u1, LANES):
         wide = min(LANES, u1 - left)
@@ -56,12 +56,12 @@ def sum_pixels(
         reference = a * np.float32(left) + b * np.float32(v0) + c
         for v in range(v0, v1):
             base, i = a * np.float32(left) + b * np.float32(v) + c, np.float32(v - v0)
-            line, here, above, below = depth[v], labels[v], labels[v - _EROSION], labels[v + _EROSION]
+            row = np.uint64(v)
             for j in range(wide):
                 u = first + np.uint64(j)
-                z = line[u]
-                same = (here[u] == mine) & (above[u] == mine) & (below[u] == mine)
-                same &= (here[u - beside] == mine) & (here[u + beside] == mine)
+                z = depth[row, u]
+                same = (labels[row, u] == mine) & (labels[row - beside, u] == mine) & (labels[row + beside, u] == mine)
+                same &= (labels[row, u - beside] == mine) & (labels[row, u + beside] == mine)
                 off = abs(z * (a * np.float32(j) + base) - one)
                 good = same & (z >= near) & (z <= far) & (off <= tolerance)
                 m = one if good else zero

@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from skills.geometry.camera import DepthImage
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import kernel, leaf_kernel
 from skills.regions.growing import PatchRegions, grow_regions
 from skills.regions.noise_level import NoiseLevel, depth_noise
 from skills.regions.parameters import RegionParameters
 from skills.regions.patches import LANES, SUMS, Patches, fit_facets, fit_plane, intrinsics, off_plane
 from skills.regions.pixel_labels import PixelLabels, label_pixels
-from skills.regions.pixel_sums import sum_pixels
+from skills.regions.pixel_sums import EROSION, sum_pixels
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,23 +51,24 @@ def refine_regions(
     near, far = camera.near, min(camera.far, parameters.depth_max)
     limits = np.array([near, far, parameters.pixel_offset, parameters.noise_factor, *patches.noise.law])
     depth = image.depth
-    labels, sure = np.full(depth.shape, -1, dtype=np.int16), np.full(depth.shape, -1, dtype=np.int16)
+    labels, bare = np.full(depth.shape, -1, dtype=np.int16), np.zeros(depth.shape, dtype=np.int16)
     inner = np.zeros(coarse.labels.shape, dtype=np.bool_)
     planes, layers = coarse.planes, coarse.labels[None]
     pixel_planes = _in_pixels(planes, lens)
-    label_pixels(depth, patches.size, limits, patches.sums, layers, planes, pixel_planes, inner, labels, sure)
+    label_pixels(depth, patches.size, limits, patches.sums, layers, planes, pixel_planes, inner, labels, bare)
+    lanes, found = np.empty(6 * LANES, np.float32), np.empty(patches.size**2, np.int16)
     left = np.zeros(patches.sums.shape)
-    if _sum_left(depth, patches.size, limits, lens, patches.sums, inner, sure, left):
+    if _sum_left(depth, patches.size, limits, lens, patches.sums, inner, bare, lanes, left):
         rest = grow_regions(fit_facets(patches, left, parameters), parameters)
         if len(rest.planes):
             planes = np.concatenate((planes, rest.planes))
-            found = np.where(rest.labels >= 0, rest.labels + len(coarse.planes), -1).astype(np.int32)
-            layers = np.stack((coarse.labels, found))
+            second = np.where(rest.labels >= 0, rest.labels + len(coarse.planes), -1).astype(np.int32)
+            layers = np.stack((coarse.labels, second))
             pixel_planes = _in_pixels(planes, lens)
-            label_pixels(depth, patches.size, limits, patches.sums, layers, planes, pixel_planes, inner, labels, sure)
+            label_pixels(depth, patches.size, limits, patches.sums, layers, planes, pixel_planes, inner, labels, bare)
     planes = np.array(planes)
     sums, sigma, bend = np.zeros((len(planes), SUMS)), np.zeros(len(planes)), np.zeros(len(planes))
-    _sum_regions(depth, patches.size, limits, lens, patches.sums, inner, labels, pixel_planes, sums)
+    _sum_regions(depth, patches.size, limits, lens, patches.sums, inner, labels, pixel_planes, lanes, found, sums)
     _refit(patches.sums, patches.size, limits[4:], inner, labels, sums, planes, sigma, bend)
     return Segmentation(labels, planes, sigma, bend, patches.noise)
 
@@ -79,7 +80,7 @@ def _in_pixels(planes: Array, lens: Array) -> NDArray[np.float32]:
     return np.column_stack((a, b, planes[:, 2] - a * cx - b * cy)).astype(np.float32)
 
 
-@kernel
+@leaf_kernel
 def _sum_left(
     depth: NDArray[np.float32],
     size: int,
@@ -87,14 +88,14 @@ def _sum_left(
     lens: Array,
     patch_sums: Array,
     inner: NDArray[np.bool_],
-    sure: PixelLabels,
+    bare: PixelLabels,
+    lanes: NDArray[np.float32],
     left: Array,
 ) -> bool:
     """Sums over the pixels of each patch that are in no region or at odds with theirs; whether there are any."""
     rows, columns = inner.shape
     height, width = depth.shape
-    lanes = np.empty(6 * LANES, np.float32)
-    nowhere = np.zeros(3, np.float32)
+    nowhere = np.float32(0.0), np.float32(0.0), np.float32(0.0)
     found = False
     for row in range(rows):
         for column in range(columns):
@@ -102,21 +103,23 @@ def _sum_left(
                 continue
             v0, u0 = row * size, column * size
             v1, u1 = min(v0 + size, height), min(u0 + size, width)
-            bare = 0
+            first, wide = np.uint64(u0), u1 - u0
+            count = 0
             for v in range(v0, v1):
-                for u in range(u0, u1):
-                    bare += sure[v, u] < 0
-            if bare == (v1 - v0) * (u1 - u0):
+                line = bare[v]
+                for j in range(wide):
+                    count += line[first + np.uint64(j)]
+            if count == (v1 - v0) * wide:
                 for k in range(10):
                     left[row, column, k] = patch_sums[row, column, k]
-            elif bare > 0:
+            elif count > 0:
                 allowed = (limits[0], limits[1], np.inf)
-                sum_pixels(depth, sure, -1, (v0, u0, v1, u1), lens, nowhere, allowed, lanes, left[row, column])
+                sum_pixels(depth, bare, 1, (v0, u0, v1, u1), lens, nowhere, allowed, lanes, left[row, column])
             found |= left[row, column, 0] > 0.0
     return found
 
 
-@kernel
+@leaf_kernel
 def _sum_regions(
     depth: NDArray[np.float32],
     size: int,
@@ -126,13 +129,13 @@ def _sum_regions(
     inner: NDArray[np.bool_],
     labels: PixelLabels,
     planes: NDArray[np.float32],
+    lanes: NDArray[np.float32],
+    found: PixelLabels,
     sums: Array,
 ) -> None:
     """Sums over the pixels of each region that lie in its plane."""
     rows, columns = inner.shape
     height, width = depth.shape
-    lanes = np.empty(6 * LANES, np.float32)
-    found = np.empty(size * size, np.int16)
     for row in range(rows):
         for column in range(columns):
             v0, u0 = row * size, column * size
@@ -142,6 +145,12 @@ def _sum_regions(
                 continue
             s = patch_sums[row, column]
             if s[0] == 0.0:
+                continue
+            if _alone(labels, v0, u0, size):
+                label = labels[v0, u0]
+                if label >= 0:
+                    for k in range(10):
+                        sums[label, k] += s[k]
                 continue
             v1, u1 = min(v0 + size, height), min(u0 + size, width)
             mean_depth = s[0] / s[3]
@@ -162,10 +171,25 @@ def _sum_regions(
                         count += 1
             for k in range(count):
                 label = found[k]
-                box = (v0, u0, v1, u1)
-                sum_pixels(
-                    depth, labels, label, box, lens, planes[label], (limits[0], limits[1], allowed), lanes, sums[label]
-                )
+                box, plane = (v0, u0, v1, u1), (planes[label, 0], planes[label, 1], planes[label, 2])
+                sum_pixels(depth, labels, label, box, lens, plane, (limits[0], limits[1], allowed), lanes, sums[label])
+
+
+@leaf_kernel
+def _alone(labels: PixelLabels, v0: int, u0: int, size: int) -> bool:
+    """Whether a patch and the pixels about it that matter to it have the same label."""
+    beside = EROSION
+    if size < 2 * beside:
+        return False
+    if v0 < beside or u0 < beside or v0 + size + beside > labels.shape[0] or u0 + size + beside > labels.shape[1]:
+        return False
+    label, change = labels[v0, u0], np.int16(0)
+    first, last = np.uint64(u0 - beside), np.uint64(u0 + beside)
+    for v in range(v0 - beside, v0 + size + beside):
+        line = labels[v]
+        for j in range(size):
+            change |= (line[first + np.uint64(j)] ^ label) | (line[last + np.uint64(j)] ^ label)
+    return change == 0
 
 
 @kernel

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import kernel, leaf_kernel
 from skills.regions.patches import fit_plane, misfit, off_plane
 
 _STRAY = 1.6  # times the noise of patch means, which neighbours share in part, is no reason to look closer
@@ -107,7 +107,7 @@ def split_regions(
     return count
 
 
-@kernel
+@leaf_kernel
 def _gather(
     labels: NDArray[np.int32],
     count: int,
@@ -132,7 +132,7 @@ def _gather(
                 sizes[region] += 1
 
 
-@kernel
+@leaf_kernel
 def _cut(
     patch_sums: Array,
     columns: int,
