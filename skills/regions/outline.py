@@ -59,21 +59,19 @@ def _trace(labels: Labels, pixels_min: int) -> tuple[Array, Indices, Indices, In
     loops = np.empty((1 << 8, 3), np.int64)
     written, count = 0, 0
     for row in range(rows):
-        line = labels[row]
         for first in range(0, columns, _STRETCH):
             last = min(first + _STRETCH, columns)
-            if first > 0 and last - first == _STRETCH:
-                # Most stretches hold no crack; comparing all their pixels at once is cheaper than one by one.
-                stretch, before, change = line[first:], line[first - 1], np.int16(0)
-                for k in range(_STRETCH):
-                    change |= stretch[k] ^ before
-                if change == 0:
-                    continue
+            # Most stretches hold no crack; comparing all their pixels at once is cheaper than one by one.
+            if first > 0 and last - first == _STRETCH and _alike(labels, row, first):
+                continue
             for column in range(first, last):
-                label = line[column]
-                if label < 0 or passed[row, column] or (column > 0 and line[column - 1] == label):
+                label = labels[row, column]
+                if label < 0 or passed[row, column] or (column > 0 and labels[row, column - 1] == label):
                     continue
-                end, pixels, points = _follow(labels, row, column, passed, points, written)
+                end, pixels = _follow(labels, row, column, passed, points, written)
+                while end < 0:
+                    points = _grown(points)
+                    end, pixels = _follow(labels, row, column, passed, points, written)
                 if abs(pixels) < pixels_min:
                     continue
                 if count == loops.shape[0]:
@@ -88,11 +86,20 @@ def _trace(labels: Labels, pixels_min: int) -> tuple[Array, Indices, Indices, In
     return points[:written], starts, owners, enclosed
 
 
-@kernel
+@leaf_kernel
+def _alike(labels: Labels, row: int, first: int) -> bool:
+    """Whether the pixels of a stretch have the same label as the one before it."""
+    start, before, change = np.uint64(first), labels[row, first - 1], np.int16(0)
+    for k in range(_STRETCH):
+        change |= labels[row, start + np.uint64(k)] ^ before
+    return change == 0
+
+
+@leaf_kernel
 def _follow(
     labels: Labels, row: int, column: int, passed: NDArray[np.uint8], points: Array, written: int
-) -> tuple[int, int, Array]:
-    """Write the loop that begins at the left of a pixel; its end, the pixels it encloses, and where it was written."""
+) -> tuple[int, int]:
+    """Write the loop that begins at the left of a pixel; its end, -1 without room, and the pixels that it encloses."""
     label = labels[row, column]
     x, y, out_x, out_y = column, row, -1, 0
     run, pixels = 1, 0
@@ -101,7 +108,7 @@ def _follow(
         if run > 2:
             written -= 1
         elif written == points.shape[0]:
-            points = _grown(points)
+            return -1, 0
         points[written, 0], points[written, 1] = x + 0.5 * out_x, y + 0.5 * out_y
         written += 1
         if out_x < 0:
@@ -118,7 +125,7 @@ def _follow(
                 x, y = x + out_x, y + out_y
                 out_x, out_y, run = -out_y, out_x, 1
         if x == column and y == row and out_x < 0:
-            return written, pixels, points
+            return written, pixels
 
 
 @kernel

@@ -335,10 +335,11 @@ def _fit_facets(
             s = sums[row, column]
             if s[0] < _FILLED_MIN * pixels:
                 continue
-            depth = s[0] / s[3]
+            ratio = 1.0 / s[3]
+            depth = s[0] * ratio
             off = limits[0] * depth_noise(noise, depth, pixels)
             f = facets[row, column]
-            f[4], f[5], f[6] = s[1] / s[3], s[2] / s[3], depth
+            f[4], f[5], f[6] = s[1] * ratio, s[2] * ratio, depth
             f[7], f[8] = off, off / (np.sqrt(6.0) * edge * depth)
             if best[column] > limits[1] + limits[0] * depth_noise(noise, depth, 1.0):
                 continue
