@@ -283,8 +283,15 @@ def _start(
     """What misfit leaves pixels without a label and what puts them at odds; no label fits where few are valid."""
     zero, one, bare = np.float32(0.0), np.float32(1.0), np.int16(-1)
     enough, refused = np.float32(_VALID_MIN), np.float32(-1.0)
+    full = True
     for k in range(block.shape[0]):
+        full &= block[k] > zero
         costs[k] = one if block[k] > zero else zero
+    if full:
+        window = np.float32((2 * RADIUS + 1) ** 2)
+        for k in range(least.shape[0]):
+            least[k], odd[k], chosen[k] = none * window, none_sure * window, bare
+        return
     _add_rows(costs, column_sums)
     for k in range(least.shape[0]):
         valid = column_sums[k] + column_sums[k + 1] + column_sums[k + 2] + column_sums[k + 3] + column_sums[k + 4]
