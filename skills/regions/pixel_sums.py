@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from skills.geometry.pose import Array
 from skills.kernels import leaf_kernel
-from skills.regions.patches import LANES, add_lanes
+from skills.regions.patch_sums import LANES, add_lanes
 from skills.regions.pixel_labels import PixelLabels
 
 EROSION = 2  # pixels this near to another label are left out [px]

@@ -18,7 +18,8 @@ from skills.kernels import kernel, leaf_kernel
 from skills.regions.growing import PatchRegions, grow_regions
 from skills.regions.noise_level import NoiseLevel, depth_noise
 from skills.regions.parameters import RegionParameters
-from skills.regions.patches import LANES, SUMS, Patches, fit_facets, fit_plane, intrinsics, off_plane
+from skills.regions.patch_sums import LANES
+from skills.regions.patches import SUMS, Patches, fit_facets, fit_plane, intrinsics, off_plane
 from skills.regions.pixel_labels import PixelLabels, label_pixels
 from skills.regions.pixel_sums import EROSION, sum_pixels
 
