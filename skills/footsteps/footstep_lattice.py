@@ -12,8 +12,8 @@ from skills.footsteps.footstep import Side, Stance
 from skills.footsteps.footstep_parameters import FootstepParameters
 from skills.footsteps.search_space import LATTICE
 from skills.footsteps.search_target import SearchTarget
-from skills.footsteps.terrain import Terrain, sole_on_slope
-from skills.geometry.pose import Array, Pose
+from skills.footsteps.terrain import Foothold, Terrain, sole_on_slope
+from skills.geometry.pose import Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,12 +66,13 @@ class FootstepLattice:
         yaws = [self.yaw + (k - self.start[1]) * self.turn for k in range(self.shape[1])]
         return np.array([(yaw, cos(yaw), sin(yaw)) for yaw in (*yaws, *others)])
 
-    def pose(self, node: int, grounds: NDArray[np.void]) -> Pose:
-        """Sole frame of a node, on the ground that the search found."""
+    def foothold(self, node: int, grounds: NDArray[np.void]) -> Foothold:
+        """The foothold of a node, on the ground that the search found."""
         _, headings, ny, nx = self.shape
         snap = node % self.stances
         heading, iy, ix = snap // (ny * nx) % headings, snap // nx % ny, snap % nx
         x = self.anchor_world[0] + (ix - self.start[3]) * self.spacing
         y = self.anchor_world[1] + (iy - self.start[2]) * self.spacing
         z, a, b = (float(grounds[snap][name]) for name in ("z", "a", "b"))
-        return sole_on_slope(x, y, z, self.yaw + (heading - self.start[1]) * self.turn, a, b)
+        T_world_sole = sole_on_slope(x, y, z, self.yaw + (heading - self.start[1]) * self.turn, a, b)
+        return Foothold(T_world_sole, float(grounds[snap]["share"]), "")

@@ -65,6 +65,10 @@ class FootstepParameters:
     reference_cost: float = parameter(0.2, unit="1/m", meaning="cost of first steps off the last plan", minimum=0.0)
     reference_steps: int = parameter(2, unit="1", meaning="steps drawn to the last plan", minimum=0, maximum=9)
 
+    wiggle_margin: float = parameter(0.02, unit="m", meaning="distance wanted from a region's edges", minimum=0.0)
+    wiggle_move: float = parameter(0.03, unit="m", meaning="largest move for it, each way", minimum=0.0, maximum=0.2)
+    wiggle_turn: float = parameter(0.087, unit="rad", meaning="largest turn for it", minimum=0.0, maximum=0.5)
+
     swing_height: float = parameter(0.08, unit="m", meaning="rise above the higher foothold", minimum=0.0, maximum=0.4)
     swing_clearance: float = parameter(0.05, unit="m", meaning="height above all ground on the way", minimum=0.0)
     swing_margin: float = parameter(0.02, unit="m", meaning="ground beside the way that counts as on it", minimum=0.0)

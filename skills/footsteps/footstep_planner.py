@@ -22,8 +22,9 @@ from skills.footsteps.search_request import search_space
 from skills.footsteps.search_target import SearchTarget, search_window
 from skills.footsteps.step_cost import REASONS
 from skills.footsteps.swing_clearance import swing_clearance
-from skills.footsteps.terrain import RegionTerrain, Terrain, region_terrain
-from skills.geometry.pose import Array, Pose
+from skills.footsteps.terrain import Foothold, RegionTerrain, Terrain, region_terrain
+from skills.footsteps.wiggled_steps import wiggle_steps
+from skills.geometry.pose import Array
 from skills.regions.planar_region import PlanarRegions
 
 if TYPE_CHECKING:
@@ -142,9 +143,10 @@ def search_plan(
             FootstepPlan(plan_id, terrain.frame_id, outcome, reason, (), 0.0, expansions, counted), progress
         )
     way = _way(space.nodes["parent"], last, before_last)
-    landings = [lattice.pose(node, space.grounds) for node in way]
-    shares = [float(space.grounds[node % lattice.stances]["share"]) for node in way]
-    steps = _steps(landings, shares, terrain, stance, first_side, parameters, first_sequence_id)
+    footholds = [lattice.foothold(node, space.grounds) for node in way]
+    goal_xy = target.path_world[-1, :2] if outcome is PlanOutcome.GOAL_REACHED else None
+    footholds = wiggle_steps(terrain, stance, first_side, footholds, parameters, goal_xy)
+    steps = _steps(footholds, terrain, stance, first_side, parameters, first_sequence_id)
     plan = FootstepPlan(plan_id, terrain.frame_id, outcome, reason, steps, float(cost), expansions, counted)
     return FoundPlan(plan, progress)
 
@@ -164,25 +166,26 @@ def _way(parents: NDArray[np.int64], last: int, before_last: int) -> list[int]:
 
 
 def _steps(
-    landings: list[Pose],
-    shares: list[float],
+    footholds: list[Foothold],
     terrain: Terrain,
     stance: Stance,
     first_side: Side,
     parameters: FootstepParameters,
     first_sequence_id: int,
 ) -> tuple[Footstep, ...]:
-    """Landings as steps, each with its foothold and its swing."""
+    """Footholds as steps, each with its swing."""
     steps: list[Footstep] = []
     side = first_side
-    for i, (landing, share) in enumerate(zip(landings, shares, strict=True)):
+    for i, foothold in enumerate(footholds):
+        landing, whole = foothold.T_world_sole, foothold.share >= 1.0
+        assert landing is not None, "a usable foothold has a pose"
         swing = swing_clearance(terrain, stance.sole(side), landing, parameters)
         steps.append(
             Footstep(
                 sequence_id=first_sequence_id + i,
                 side=side,
                 T_world_sole=landing,
-                foothold_sole=whole_sole(parameters) if share >= 1.0 else terrain.foothold_polygon(landing, parameters),
+                foothold_sole=whole_sole(parameters) if whole else terrain.foothold_polygon(landing, parameters),
                 swing_duration=parameters.swing_duration,
                 transfer_duration=parameters.transfer_duration,
                 swing_height=swing.height,

@@ -43,7 +43,7 @@ def search_footsteps(
     limits, goal, lattice, stand = space.limits[0], space.goal[0], space.lattice[0], space.stand[0]
     headings, feet, nodes, grounds = space.headings, space.feet, space.nodes, space.grounds
     reference, rejections = space.reference, space.rejections
-    root, swing = _put_feet(limits, goal, lattice, space.path, space.field, headings, feet, nodes, grounds)
+    root, swing = _put_feet(limits, goal, lattice, space.path, space.field, headings, feet, nodes)
     start_to_go, best = nodes[root].to_go, root
     size = push(open_list, 0, 0.0, 0.0, root, swing)
     outcome, expansions = EXHAUSTED, 0
@@ -88,13 +88,10 @@ def _put_feet(
     headings: Array,
     feet: Array,
     nodes: Records,
-    grounds: Records,
 ) -> tuple[int, int]:
     """Put the stance foot and the swing foot where they are; their nodes."""
     snap = ((lattice.floor * lattice.headings + lattice.heading) * lattice.ny + lattice.iy) * lattice.nx + lattice.ix
     root, swing = snap + (0 if feet[0, 6] > 0 else lattice.stances), 2 * lattice.stances
-    ground = grounds[snap]
-    ground.outcome, ground.z, ground.a, ground.b, ground.share = FOOTHOLD, feet[0, 2], feet[0, 4], feet[0, 5], 1.0
     for i in range(2):
         heading, node = (lattice.heading, root) if i == 0 else (lattice.headings, swing)
         x, y, z = feet[i, 0], feet[i, 1], feet[i, 2]
@@ -208,17 +205,19 @@ def _stand_on(
     stand: Records,
 ) -> None:
     """Fill in what a step from a stance foot depends on."""
-    snap, swing = stance % lattice.stances, nodes[stance].parent
-    ground, heading = grounds[snap], _heading(lattice, stance)
+    swing, heading = nodes[stance].parent, _heading(lattice, stance)
     stand.x, stand.y = _place(limits, lattice, feet, stance)
-    stand.z, stand.cos, stand.sin = ground.z, headings[heading, 1], headings[heading, 2]
-    stand.uphill = ground.a * stand.cos + ground.b * stand.sin
+    stand.cos, stand.sin = headings[heading, 1], headings[heading, 2]
     stand.cost, stand.depth = nodes[stance].cost, nodes[stance].depth
+    # The first two feet stand where they do, on whatever ground.
     if swing == 2 * lattice.stances:
+        stand.z, stand.uphill = feet[0, 2], feet[0, 4] * stand.cos + feet[0, 5] * stand.sin
         stand.swing_x, stand.swing_y, stand.swing_z = feet[1, 0], feet[1, 1], feet[1, 2]
-    else:
-        stand.swing_x, stand.swing_y = _place(limits, lattice, feet, swing)
-        stand.swing_z = grounds[swing % lattice.stances].z
+        return
+    ground = grounds[stance % lattice.stances]
+    stand.z, stand.uphill = ground.z, ground.a * stand.cos + ground.b * stand.sin
+    stand.swing_x, stand.swing_y = _place(limits, lattice, feet, swing)
+    stand.swing_z = feet[0, 2] if nodes[swing].parent == 2 * lattice.stances else grounds[swing % lattice.stances].z
 
 
 @kernel

@@ -39,20 +39,32 @@ def fill_level_steps(limits: Records, headings: Array, heading: int, sign: float
         for i in range(-most, most + 1):
             dx, dy = i * limits.lattice, j * limits.lattice
             length, width = cos * dx + sin * dy, sign * (cos * dy - sin * dx)
-            if length < -limits.back_reach or np.hypot(length, width - limits.ideal_width) > limits.reach:
-                continue
-            if width < limits.minimum_width or width > limits.maximum_width:
+            if not _within_reach(limits, length, width):
                 continue
             for k in range(-turns, turns + 1):
                 if not whole and (heading + k < 0 or heading + k >= count_headings):
                     continue
-                outward = sign * k * limits.heading
-                if outward < -limits.inward_yaw - 1e-9 or outward > limits.outward_yaw + 1e-9:
-                    continue
-                if _soles_clear(limits, length, width, outward):
+                if level_step_allowed(limits, length, width, sign * k * limits.heading):
                     steps[count, 0], steps[count, 1], steps[count, 2] = i, j, (heading + k) % count_headings
                     count += 1
     return count
+
+
+@kernel
+def level_step_allowed(limits: Records, length: float, width: float, outward: float) -> bool:
+    """Whether a foot may land at length and width from a stance foot, seen in its frame, and turned outward."""
+    if not _within_reach(limits, length, width):
+        return False
+    if outward < -limits.inward_yaw - 1e-9 or outward > limits.outward_yaw + 1e-9:
+        return False
+    return _soles_clear(limits, length, width, outward)
+
+
+@kernel
+def _within_reach(limits: Records, length: float, width: float) -> bool:
+    if length < -limits.back_reach or np.hypot(length, width - limits.ideal_width) > limits.reach:
+        return False
+    return limits.minimum_width <= width <= limits.maximum_width
 
 
 @kernel

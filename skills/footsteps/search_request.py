@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from mmap import MAP_ANONYMOUS, MAP_PRIVATE, mmap
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -43,14 +45,20 @@ def search_space(
         feet=np.array([_foot(stance, side, corner) for side in (first_side.opposite, first_side)]),
         lattice=lattice.record(),
         headings=lattice.headings(stance.sole(first_side).yaw),
-        nodes=np.zeros(2 * lattice.stances + 1, dtype=NODE),
-        grounds=np.zeros(lattice.stances, dtype=GROUND),
+        nodes=_zeros(2 * lattice.stances + 1, NODE),
+        grounds=_zeros(lattice.stances, GROUND),
         steps=np.empty((2 * headings, most_level_steps(parameters), 3), dtype=np.int64),
         step_counts=np.zeros(2 * headings, dtype=np.int64),
         stand=np.zeros(1, dtype=STAND),
         snapped=np.zeros(4),
         rejections=np.zeros(len(REASONS), dtype=np.int64),
     )
+
+
+def _zeros(count: int, dtype: np.dtype[np.void]) -> NDArray[np.void]:
+    """Zeros of which only what is touched costs time: fresh pages from the system, where numpy may clear old memory."""
+    pages = mmap(-1, count * dtype.itemsize, flags=MAP_PRIVATE | MAP_ANONYMOUS)
+    return np.frombuffer(pages, dtype=dtype)
 
 
 def _foot(stance: Stance, side: Side, corner: Array) -> tuple[float, ...]:
