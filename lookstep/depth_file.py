@@ -1,4 +1,4 @@
-"""Depth images out of files, and cameras out of text: what any depth sensor writes becomes one of our depth images."""
+"""Depths out of files, and cameras out of text: what any depth sensor writes, and through which lens."""
 
 from __future__ import annotations
 
@@ -11,15 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lookstep.errors import UserError
-from skills.geometry import DepthImage, PinholeCamera, Pose
-from skills.geometry.pose import rotation_y
+from skills.geometry import PinholeCamera
 
 FORMATS = "PNG or TIFF of 16 bits, TIFF or EXR of floats, .npy"
-_MILLIMETRES = 1000.0
 # Any sensor is welcome; `regions.depth_max` is what limits the range.
 _NEAR, _FAR = 0.01, 100.0
-# x right, y down, z forward of a level camera that looks along the world's x.
-_R_WORLD_CAMERA = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 
 def read_values(path: Path) -> NDArray[Any]:
@@ -39,11 +35,6 @@ def read_values(path: Path) -> NDArray[Any]:
     if values.ndim != 2 or 0 in values.shape or values.dtype.kind not in "uif":
         raise UserError(f"{held}; needs rows and columns of one depth each ({FORMATS})")
     return values
-
-
-def assumed_values_per_metre(values: NDArray[Any]) -> float:
-    """What numbers mean where nobody says it: whole ones are millimetres, floats metres."""
-    return _MILLIMETRES if values.dtype.kind in "ui" else 1.0
 
 
 def parse_camera(text: str, width: int, height: int) -> PinholeCamera:
@@ -66,25 +57,6 @@ def parse_camera(text: str, width: int, height: int) -> PinholeCamera:
                 "is the camera given for another resolution?"
             )
     return PinholeCamera(width, height, fx, fy, cx, cy, near=_NEAR, far=_FAR)
-
-
-def depth_image(
-    values: NDArray[Any], values_per_metre: float, camera: PinholeCamera, height: float = 0.0, pitch: float = 0.0
-) -> DepthImage:
-    """A depth image of a camera above the world's origin that looks along the world's x.
-
-    Args:
-        values: depths, (height, width); not a number, 0 and less mean none.
-        values_per_metre: their unit.
-        camera: it must have the size of the values.
-        height: of the camera [m].
-        pitch: of its view below the horizon [rad].
-    """
-    with np.errstate(over="ignore", invalid="ignore"):
-        depth = (values / values_per_metre).astype(np.float32)
-    depth[~(np.isfinite(depth) & (depth > 0.0))] = 0.0
-    T_world_camera = Pose(rotation_y(pitch) @ _R_WORLD_CAMERA, np.array((0.0, 0.0, height)))
-    return DepthImage(depth, camera, T_world_camera, time=0.0, frame_id=0)
 
 
 def _read_array(path: Path) -> NDArray[Any]:

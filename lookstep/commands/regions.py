@@ -55,15 +55,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Extract, print, write; 0 however little was found."""
-    from lookstep.depth_file import assumed_values_per_metre, depth_image, parse_camera, read_values
+    from lookstep.depth_file import parse_camera, read_values
     from lookstep.extraction_figures import extraction_figures
+    from skills.geometry import DepthImage, looking
+    from skills.geometry.camera import values_per_metre
 
     _check(options)
     parameters = _parameters(options)
     values = read_values(options.image)
     camera = parse_camera(options.camera, width=values.shape[1], height=values.shape[0])
-    scale = options.scale or assumed_values_per_metre(values)
-    image = depth_image(values, scale, camera, options.height, np.deg2rad(options.pitch))
+    scale = options.scale or values_per_metre(values)
+    T_world_camera = looking((0.0, 0.0, options.height), pitch=np.deg2rad(options.pitch))
+    image = DepthImage.from_array(values, camera, scale=scale, T_world_camera=T_world_camera)
     extraction, milliseconds = _timed(image, parameters)
     figures = dataclasses.replace(extraction_figures(extraction), extract_ms=milliseconds, runs=_RUNS)
     files = _files(options)

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from sim_envs.sensors import looking
-from skills.geometry.camera import PinholeCamera
+from skills.geometry.camera import PinholeCamera, looking
 from skills.geometry.pose import Pose
 
 _NEAR, _FAR = 0.05, 80.0

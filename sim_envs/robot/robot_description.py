@@ -8,12 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
+from skills.geometry.camera import looking
 from skills.geometry.pose import Pose, rotation_y
 from skills.parameters import parameter, parameters
 
 _FOLDER = Path(__file__).parent
-# Columns: camera axes (x right, y down, z forward) of a level camera in its body (x forward, y left, z up).
-_R_body_level_camera = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 
 
 @parameters
@@ -55,8 +54,7 @@ class RobotDescription:
     @property
     def T_body_camera(self) -> Pose:
         """Depth camera (x right, y down, z forward) in the body that carries it."""
-        pitch = np.deg2rad(self.camera_pitch_deg)
-        return Pose(rotation_y(pitch) @ _R_body_level_camera, np.array(self.camera_position))
+        return looking(self.camera_position, pitch=np.deg2rad(self.camera_pitch_deg))
 
     @property
     def T_body_lidar(self) -> Pose:

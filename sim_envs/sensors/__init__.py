@@ -1,6 +1,6 @@
 """Simulated sensors with realistic noise: a depth camera and a lidar, neither of which needs a graphics library."""
 
-from sim_envs.sensors.depth_camera import DepthCamera, DepthCameraParameters, looking
+from sim_envs.sensors.depth_camera import DepthCamera, DepthCameraParameters
 from sim_envs.sensors.depth_noise import DEPTH_NOISE_PRESETS, DepthNoise
 from sim_envs.sensors.geom_mesh import GeomMesh, geom_mesh, geom_rgba
 from sim_envs.sensors.lidar import Lidar, LidarParameters
@@ -24,7 +24,6 @@ __all__ = [
     "Snapshot",
     "geom_mesh",
     "geom_rgba",
-    "looking",
     "own_body",
     "rasterize_depth",
     "rasterize_faces",

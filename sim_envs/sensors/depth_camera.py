@@ -61,13 +61,6 @@ class DepthCameraParameters:
         return full.scaled(self.resolution)
 
 
-def looking(xyz: tuple[float, float, float] | Array, *, pitch: float, yaw: float = 0.0) -> Pose:
-    """A camera frame (x right, y down, z forward) at xyz that looks along yaw, pitch below the horizon [m, rad]."""
-    forward_left_up = Pose.from_xyz_rpy(xyz, (0.0, pitch, yaw))
-    R_flu_camera = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-    return Pose(forward_left_up.R @ R_flu_camera, forward_left_up.p)
-
-
 class DepthCamera:
     """Depth images of a MuJoCo model, the robot's own legs included.
 

@@ -1,6 +1,6 @@
 """Rigid transforms, polygons, and what cameras and lidars deliver."""
 
-from skills.geometry.camera import DepthImage, PinholeCamera
+from skills.geometry.camera import DepthImage, PinholeCamera, looking
 from skills.geometry.capsule import Capsule
 from skills.geometry.convex_decomposition import convex_parts
 from skills.geometry.lidar import LidarScan, SpinningLidar
@@ -20,6 +20,7 @@ __all__ = [
     "contains_points",
     "convex_hull",
     "convex_parts",
+    "looking",
     "readonly",
     "signed_area",
     "simplify",

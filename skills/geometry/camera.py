@@ -7,16 +7,29 @@ forward); depth is the coordinate along z, not along the ray. Integer pixel coor
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from skills.geometry.capsule import Capsule
-from skills.geometry.pose import IDENTITY, Pose
+from skills.geometry.pose import IDENTITY, Array, Pose
 
 # The pose of a camera that looks straight down from the world's origin, the top of its image along x.
 LOOKING_DOWN = Pose(np.array([[0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]]), np.zeros(3))
 _MILLIMETRES_PER_METRE = 1000.0
+
+
+def looking(xyz: tuple[float, float, float] | Array, *, pitch: float, yaw: float = 0.0) -> Pose:
+    """A camera frame (x right, y down, z forward) at xyz that looks along yaw, pitch below the horizon [m, rad]."""
+    forward_left_up = Pose.from_xyz_rpy(xyz, (0.0, pitch, yaw))
+    R_flu_camera = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+    return Pose(forward_left_up.R @ R_flu_camera, forward_left_up.p)
+
+
+def values_per_metre(values: NDArray[Any]) -> float:
+    """What numbers mean where nobody says it: whole ones are millimetres, floats metres."""
+    return 1.0 if values.dtype.kind == "f" else _MILLIMETRES_PER_METRE
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +135,7 @@ class DepthImage:
         if array.dtype.kind not in "iuf" or (array.dtype.kind in "iu" and array.dtype.itemsize < 2):
             raise ValueError(f"got values of type {array.dtype}, needs floats or whole numbers of 16 bits or more")
         if scale is None:
-            scale = 1.0 if array.dtype.kind == "f" else _MILLIMETRES_PER_METRE
+            scale = values_per_metre(array)
         if not np.isfinite(scale) or scale <= 0.0:
             raise ValueError(f"scale: got {scale}, needs a positive number of values a metre")
         # Half floats overflow at 65504, and values beyond single precision are no depth either.

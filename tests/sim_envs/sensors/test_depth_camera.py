@@ -13,9 +13,9 @@ from sim_envs.sensors import (
     DepthCameraParameters,
     Snapshot,
     geom_mesh,
-    looking,
     rasterize_faces,
 )
+from skills.geometry.camera import looking
 from skills.geometry.pose import Pose
 
 QUIET = DEPTH_NOISE_PRESETS["none"]

@@ -4,8 +4,8 @@ import mujoco
 import numpy as np
 import pytest
 
-from sim_envs.sensors import DepthCameraParameters, geom_mesh, looking, rasterize_depth, rasterize_faces
-from skills.geometry.camera import PinholeCamera
+from sim_envs.sensors import DepthCameraParameters, geom_mesh, rasterize_depth, rasterize_faces
+from skills.geometry.camera import PinholeCamera, looking
 from skills.geometry.pose import Pose
 
 CAMERA = DepthCameraParameters().camera
