@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,22 +11,38 @@ from typing import Any
 from behaviors.blackboard import type_name
 from behaviors.leaf import declared_ports
 from behaviors.registry import Registry
-from strict_yaml import Kind, Location, Node, Problem, YamlError, load_document, nearest
+from strict_yaml import (
+    Entry,
+    Kind,
+    Location,
+    Node,
+    Problem,
+    YamlError,
+    load_document,
+    nearest,
+    shipped_folder,
+)
 
 TREE_NAME = re.compile(r"[a-z][a-z0-9_]*")
 KEY = re.compile(r"[a-z][a-z0-9_]*")
 
 _FILE_KEYS = ("tree", "about", "include", "ports", "root", "safe_stop", "trees")
 _TREE_KEYS = ("about", "ports", "root")
+_PORT_KEYS = ("type", "unit", "frame")
+
+MAXIMUM_INCLUDE_DEPTH = 20
+MAXIMUM_FILES = 100
 
 
 @dataclass(frozen=True, slots=True)
 class PortDeclaration:
-    """A value that goes into a tree or comes out of it."""
+    """A value that goes into a tree or comes out of it; unit and frame as for the ports of leaves."""
 
     name: str
     type: Any
     location: Location
+    unit: str = "1"
+    frame: str = ""
 
 
 @dataclass(slots=True)
@@ -55,22 +71,43 @@ class Definition:
     problems: list[Problem] = field(default_factory=list)
 
 
-def read_definition(document: Node, registry: Registry, including: tuple[Path, ...] = ()) -> Definition:
+def read_definition(document: Node, registry: Registry, read: Callable[[Path], Node] = load_document) -> Definition:
     """Read the frame of a file and of those it includes.
 
     Args:
         document: the file.
         registry: whose ports name the types that ports may have.
-        including: the files that led here, to notice a cycle.
+        read: gives the content of an included file; raises YamlError where that is not possible.
     """
-    reader = _FrameReader(registry, (*including, Path(document.location.file).resolve()))
-    return reader.read_file(document)
+    return _FrameReader(registry, (_identity(Path(document.location.file)),), {}, read).read_file(document)
+
+
+def _identity(path: Path) -> Path:
+    """One path for a file that can be named in several ways."""
+    return path.resolve()
 
 
 class _FrameReader:
-    def __init__(self, registry: Registry, including: tuple[Path, ...]) -> None:
+    """Reads one file.
+
+    Args:
+        registry: names the types of ports.
+        including: the files that led here, this one last, to notice a cycle.
+        read_already: what became of the files that were read before, by path.
+        read: gives the content of a file.
+    """
+
+    def __init__(
+        self,
+        registry: Registry,
+        including: tuple[Path, ...],
+        read_already: dict[Path, Definition],
+        read: Callable[[Path], Node],
+    ) -> None:
         self.registry = registry
         self.including = including
+        self.read_already = read_already
+        self.read = read
         self.types = port_types(registry)
         self.problems: list[Problem] = []
 
@@ -104,18 +141,28 @@ class _FrameReader:
         if node.kind is not Kind.MAPPING:
             self._add(node, f"got {node.describe()}, needs a mapping of port names to types, such as {{goal: Pose}}")
             return ()
-        ports = []
-        for entry in node.entries:
-            declared = self._text(entry.node)
-            if not KEY.fullmatch(entry.key):
-                self._add(entry.location, f'got port "{entry.key}"; a port is named in small letters, digits and "_"')
-            elif declared and declared not in self.types:
-                allowed = ", ".join(sorted(self.types))
-                hint = nearest(declared, self.types)
-                self._add(entry.node, f'unknown type "{declared}"{hint} (types of ports: {allowed})')
-            elif declared:
-                ports.append(PortDeclaration(entry.key, self.types[declared], entry.location))
-        return tuple(ports)
+        ports = [self._read_port(entry) for entry in node.entries]
+        return tuple(port for port in ports if port is not None)
+
+    def _read_port(self, entry: Entry) -> PortDeclaration | None:
+        """A port as `goal: Goal`, or in long as `distance: {type: float, unit: m, frame: world}`."""
+        if not KEY.fullmatch(entry.key):
+            self._add(entry.location, f'got port "{entry.key}"; a port is named in small letters, digits and "_"')
+            return None
+        declared, unit, frame = entry.node, "", ""
+        if declared.kind is Kind.MAPPING:
+            if not self._check_keys(declared, _PORT_KEYS, ("type",), f'port "{entry.key}"'):
+                return None
+            unit, frame = self._text(declared.get("unit")), self._text(declared.get("frame"))
+            declared = declared.get("type")
+        name = self._text(declared)
+        if not name or declared is None:
+            return None
+        if name not in self.types:
+            allowed = ", ".join(sorted(self.types))
+            self._add(declared, f'unknown type "{name}"{nearest(name, self.types)} (types of ports: {allowed})')
+            return None
+        return PortDeclaration(entry.key, self.types[name], entry.location, unit or "1", frame)
 
     def _read_local_trees(self, node: Node | None, parent: Definition) -> None:
         if node is None:
@@ -146,21 +193,44 @@ class _FrameReader:
                 self._include_file(element, name, parent)
 
     def _include_file(self, node: Node, name: str, parent: Definition) -> None:
-        path = Path(node.location.file).parent / name
-        if path.resolve() in self.including:
-            cycle = " -> ".join(file.name for file in (*self.including, path.resolve()))
+        path = self._included_path(node, name)
+        if path is None:
+            return
+        file = _identity(path)
+        if file in self.including:
+            cycle = " -> ".join(file.name for file in (*self.including, file))
             self._add(node, f"files include one another: {cycle}")
             return
-        try:
-            included = read_definition(load_document(path), self.registry, self.including)
-        except YamlError as error:
-            self.problems.extend(error.problems)
-            self._add(node, f'cannot include "{name}"')
-            return
+        if file not in self.read_already:
+            if len(self.including) >= MAXIMUM_INCLUDE_DEPTH or len(self.read_already) >= MAXIMUM_FILES:
+                self._add(node, f"files are included {MAXIMUM_INCLUDE_DEPTH} deep or {MAXIMUM_FILES} in all at most")
+                return
+            reader = _FrameReader(self.registry, (*self.including, file), self.read_already, self.read)
+            try:
+                self.read_already[file] = reader.read_file(self.read(path))
+            except YamlError as error:
+                self.problems.extend(error.problems)
+                self._add(node, f'cannot include "{name}"')
+                return
+        included = self.read_already[file]
         self.problems.extend(included.problems)
         if included.name in parent.trees:
             self._add(node, f'tree "{included.name}" is already included from another file')
         parent.trees[included.name] = included
+        for inner, definition in included.trees.items():
+            # The trees of an included file go by its name: look_and_step/follow_path.
+            if "/" not in inner:
+                parent.trees[f"{included.name}/{inner}"] = definition
+
+    def _included_path(self, node: Node, name: str) -> Path | None:
+        """The file of a path from here, or of the bare name of a shipped tree."""
+        if Path(name).suffix in (".yaml", ".yml"):
+            return Path(node.location.file).parent / name
+        names = sorted(path.stem for path in shipped_folder("trees").glob("*.yaml"))
+        if name in names:
+            return shipped_folder("trees") / f"{name}.yaml"
+        self._add(node, f'unknown tree "{name}"{nearest(name, names)} (shipped: {", ".join(names)}; or a .yaml file)')
+        return None
 
     def _check_keys(self, node: Node, allowed: Iterable[str], required: Iterable[str], what: str) -> bool:
         if node.kind is not Kind.MAPPING:

@@ -6,19 +6,23 @@ that are its ports, which become the keys that the use wires them to.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+import dataclasses
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from behaviors.bodies import check_keys, get, is_scalar, read_parameters, seen_below, with_child
+from behaviors.check_leaf import Check
 from behaviors.composites import COMPOSITES
 from behaviors.decorators import Decorator
 from behaviors.definition import Definition
+from behaviors.expression import ExpressionError, parse_expression
 from behaviors.kinds import DECORATORS, unknown_kind
 from behaviors.leaf import Leaf
 from behaviors.naming import sibling_names, slug
+from behaviors.overrides import override
 from behaviors.ports import declared_inputs, declared_outputs
 from behaviors.registry import Registry
+from behaviors.scope import Condition, Expansion, Scope, Use
 from behaviors.spec import NodeSpec, Wire
 from behaviors.wiring import named_ports, read_wires, written_keys
 from strict_yaml import Entry, Kind, Location, Node, Problem, nearest
@@ -26,70 +30,27 @@ from strict_yaml import Entry, Kind, Location, Node, Problem, nearest
 MAXIMUM_NODES = 5000
 MAXIMUM_DEPTH = 100
 
-_SUBTREE_KEYS = ("tree", "name", "in", "out")
+_SUBTREE_KEYS = ("tree", "name", "in", "out", "set")
 
 
-@dataclass(frozen=True, slots=True)
-class Use:
-    """A port at the end of a key."""
-
-    key: str
-    type: Any
-    location: Location
-    path: str
-    port: str
-
-
-@dataclass(slots=True)
-class Expansion:
-    """What became of a definition.
-
-    Attributes:
-        definition: what was expanded.
-        root, safe_stop: the trees; None where they could not be read or are not there.
-        reads, writes: the ports at the ends of all keys.
-        doubtful: keys that something may write that could not be read; not known to be missing.
-    """
-
-    definition: Definition
-    root: NodeSpec | None = None
-    safe_stop: NodeSpec | None = None
-    reads: list[Use] = field(default_factory=list)
-    writes: list[Use] = field(default_factory=list)
-    doubtful: set[str] = field(default_factory=set)
+def place_in(node: Node, offset: int) -> Location:
+    """Where a character of a scalar's text is written."""
+    if not node.text_column:
+        return node.location
+    return dataclasses.replace(node.location, column=node.text_column + offset)
 
 
 def expand(definition: Definition, registry: Registry, problems: list[Problem]) -> Expansion:
     """Expand a definition; problems are appended."""
     expansion = Expansion(definition)
     expander = _Expander(registry, problems, expansion)
-    scope = _Scope(definition, stack=(definition.name,))
+    scope = Scope(definition, stack=(definition.name,))
     if definition.root is not None:
         expansion.root = expander.root(definition.root, scope, f"/{definition.name}", definition.name)
     if definition.safe_stop is not None:
         expansion.safe_stop = expander.root(definition.safe_stop, scope, "/safe_stop", "safe_stop")
     expander.check_unused(definition)
     return expansion
-
-
-@dataclass(frozen=True, slots=True)
-class _Scope:
-    """Where a name is looked up.
-
-    Attributes:
-        definition: the tree around.
-        prefix: what goes before a key that is no port, such as "recover/".
-        ports: keys that the ports of the tree around are wired to, by port.
-        stack: names of the trees around, the outermost first.
-    """
-
-    definition: Definition
-    prefix: str = ""
-    ports: dict[str, str] = field(default_factory=dict)
-    stack: tuple[str, ...] = ()
-
-    def key(self, name: str) -> str:
-        return self.ports.get(name, self.prefix + name)
 
 
 class _Expander:
@@ -100,7 +61,7 @@ class _Expander:
         self.used: set[int] = set()
         self.nodes = 0
 
-    def root(self, node: Node, scope: _Scope, path: str, name: str) -> NodeSpec | None:
+    def root(self, node: Node, scope: Scope, path: str, name: str) -> NodeSpec | None:
         """The root of a tree, under a name that it does not choose itself."""
         head = self._head(node, path)
         if head is None:
@@ -118,7 +79,7 @@ class _Expander:
                 ports = {port.name: f"?{port.name}" for port in (*tree.inputs, *tree.outputs)}
                 apart = _Expander(self.registry, self.problems, Expansion(tree))
                 apart.used = self.used
-                apart.root(tree.root, _Scope(tree, "?", ports, (tree.name,)), f"/{tree.name}", tree.name)
+                apart.root(tree.root, Scope(tree, "?", ports, (tree.name,)), f"/{tree.name}", tree.name)
             if tree.trees is not definition.trees:
                 self.check_unused(tree)
 
@@ -132,7 +93,7 @@ class _Expander:
             return None
         return node.entries[0]
 
-    def _node(self, head: Entry, scope: _Scope, path: str, name: str, depth: int) -> NodeSpec | None:
+    def _node(self, head: Entry, scope: Scope, path: str, name: str, depth: int) -> NodeSpec | None:
         self.nodes += 1
         if self.nodes > MAXIMUM_NODES or depth > MAXIMUM_DEPTH:
             limit = f"more than {MAXIMUM_NODES} nodes" if self.nodes > MAXIMUM_NODES else f"deeper than {MAXIMUM_DEPTH}"
@@ -140,6 +101,8 @@ class _Expander:
             return None
         if head.key == "subtree":
             return self._subtree(head, scope, path, name, depth)
+        if head.key == Check.kind:
+            return self._check(head, scope, path, name)
         if head.key in COMPOSITES:
             return self._composite(head, scope, path, name, depth)
         if head.key in DECORATORS:
@@ -152,12 +115,12 @@ class _Expander:
         self._children(seen_below(head.node, self.registry), scope, path, depth)
         return None
 
-    def _doubt(self, head: Entry, scope: _Scope) -> None:
+    def _doubt(self, head: Entry, scope: Scope) -> None:
         """Do not say of the outputs of a node that cannot be read that nothing writes them."""
         keys = written_keys(get(head.node, "out"))
         self.expansion.doubtful.update(scope.key(key) for key in keys)
 
-    def _composite(self, head: Entry, scope: _Scope, path: str, name: str, depth: int) -> NodeSpec | None:
+    def _composite(self, head: Entry, scope: Scope, path: str, name: str, depth: int) -> NodeSpec | None:
         cls = COMPOSITES[head.key]
         body = head.node
         if body.kind is Kind.SEQUENCE:
@@ -173,7 +136,7 @@ class _Expander:
         children = self._children(listed.elements, scope, path, depth)
         return NodeSpec(cls, head.key, name, path, head.location, parameters, given, children=children)
 
-    def _decorator(self, head: Entry, scope: _Scope, path: str, name: str, depth: int) -> NodeSpec | None:
+    def _decorator(self, head: Entry, scope: Scope, path: str, name: str, depth: int) -> NodeSpec | None:
         cls: type[Decorator] = DECORATORS[head.key]
         body = with_child(head, self.registry, path, self.problems)
         parameters, given = self._parameters(cls, head, body, ("name", *cls.slots), path)
@@ -186,7 +149,7 @@ class _Expander:
         children = self._children([node for _, node in slots if node is not None], scope, path, depth)
         return NodeSpec(cls, head.key, name, path, head.location, parameters, given, children=children)
 
-    def _children(self, nodes: Sequence[Node], scope: _Scope, path: str, depth: int) -> tuple[NodeSpec, ...]:
+    def _children(self, nodes: Sequence[Node], scope: Scope, path: str, depth: int) -> tuple[NodeSpec, ...]:
         heads = [head for node in nodes if (head := self._head(node, path)) is not None]
         names = sibling_names(heads, path, self.problems)
         children = [
@@ -195,7 +158,7 @@ class _Expander:
         ]
         return tuple(child for child in children if child is not None)
 
-    def _subtree(self, head: Entry, scope: _Scope, path: str, name: str, depth: int) -> NodeSpec | None:
+    def _subtree(self, head: Entry, scope: Scope, path: str, name: str, depth: int) -> NodeSpec | None:
         if not check_keys(head, _SUBTREE_KEYS, path, self.problems):
             return None
         chosen = get(head.node, "tree")
@@ -215,9 +178,9 @@ class _Expander:
         if definition.name in scope.stack:
             self._add(chosen, f"a tree contains itself: {' -> '.join((*scope.stack, definition.name))}", path)
             return None
-        inner = _Scope(
+        inner = Scope(
             definition,
-            self._prefix(path),
+            self.expansion.prefix(path),
             self._wire_tree(head, definition, scope, path),
             (*scope.stack, definition.name),
         )
@@ -229,63 +192,70 @@ class _Expander:
         spec = self._node(root, inner, path, name, depth)
         if spec is None:
             return None
-        return NodeSpec(
-            spec.cls,
-            spec.kind,
-            spec.name,
-            spec.path,
-            spec.location,
-            spec.parameters,
-            spec.given,
-            spec.inputs,
-            spec.outputs,
-            spec.children,
-            definition.name,
-        )
+        return override(dataclasses.replace(spec, subtree=definition.name), get(head.node, "set"), self.problems)
 
-    def _wire_tree(self, head: Entry, definition: Definition, scope: _Scope, path: str) -> dict[str, str]:
+    def _wire_tree(self, head: Entry, definition: Definition, scope: Scope, path: str) -> dict[str, str]:
         ports: dict[str, str] = {}
-        inputs = {port.name: port.type for port in definition.inputs}
-        outputs = {port.name: port.type for port in definition.outputs}
+        inputs = {port.name: port for port in definition.inputs}
+        outputs = {port.name: port for port in definition.outputs}
         for wire, location in self._wires(head, "in", inputs, scope, path):
+            port = inputs[wire.port]
             ports[wire.port] = wire.key
-            self.expansion.reads.append(Use(wire.key, inputs[wire.port], location, path, wire.port))
+            self.expansion.reads.append(Use(wire.key, port.type, location, path, wire.port, port.unit, port.frame))
         for name in inputs:
             if name not in named_ports(get(head.node, "in")):
                 self._add(head.location, f'input "{name}" of tree "{definition.name}" is not wired', path)
-        for wire, _ in self._wires(head, "out", outputs, scope, path):
+        for wire, location in self._wires(head, "out", outputs, scope, path):
+            port = outputs[wire.port]
             ports[wire.port] = wire.key
+            self.expansion.handed_out.append(Use(wire.key, port.type, location, path, wire.port, port.unit, port.frame))
+        self.expansion.dropped.update(self.expansion.prefix(path) + name for name in outputs if name not in ports)
         return ports
 
-    def _leaf(self, cls: type[Leaf], head: Entry, scope: _Scope, path: str, name: str) -> NodeSpec:
+    def _leaf(self, cls: type[Leaf], head: Entry, scope: Scope, path: str, name: str) -> NodeSpec:
         parameters, given = self._parameters(cls, head, head.node, ("name", "in", "out"), path)
         inputs, outputs = declared_inputs(cls), declared_outputs(cls)
-        types = {port: declared.type for port, declared in inputs.items()}
-        reads = self._wires(head, "in", types, scope, path)
+        reads = self._wires(head, "in", inputs, scope, path)
         for wire, location in reads:
-            self.expansion.reads.append(Use(wire.key, inputs[wire.port].type, location, path, wire.port))
+            port = inputs[wire.port]
+            self.expansion.reads.append(Use(wire.key, port.type, location, path, wire.port, port.unit, port.frame))
         named = named_ports(get(head.node, "in"))
         for port, declared in inputs.items():
             if declared.required and port not in named:
                 self._add(head.location, f'input "{port}" of {head.key} is not wired', path)
-        types = {port: declared.type for port, declared in outputs.items()}
-        writes = self._wires(head, "out", types, scope, path)
+        writes = self._wires(head, "out", outputs, scope, path)
         for wire, location in writes:
-            self.expansion.writes.append(Use(wire.key, outputs[wire.port].type, location, path, wire.port))
-        return NodeSpec(
-            cls,
-            head.key,
-            name,
-            path,
-            head.location,
-            parameters,
-            given,
-            tuple(wire for wire, _ in reads),
-            tuple(wire for wire, _ in writes),
-        )
+            port = outputs[wire.port]
+            self.expansion.writes.append(Use(wire.key, port.type, location, path, wire.port, port.unit, port.frame))
+        wires = (tuple(wire for wire, _ in reads), tuple(wire for wire, _ in writes))
+        return NodeSpec(cls, head.key, name, path, head.location, parameters, given, *wires)
+
+    def _check(self, head: Entry, scope: Scope, path: str, name: str) -> NodeSpec | None:
+        """A condition: `check: left > 0`, or a mapping with the condition under `that`."""
+        body = head.node
+        if body.kind is Kind.SCALAR and body.value is not None:
+            body = Node(Kind.MAPPING, body.location, (Entry("that", body.location, body),))
+        if get(body, "that") is None:
+            self._add(head.location, 'check needs a condition, such as "check: left > 0"', path)
+            return None
+        parameters, given = self._parameters(Check, head, body, ("name",), path)
+        if parameters is None:
+            return None
+        written = get(body, "that")
+        assert written is not None
+        try:
+            names = parse_expression(parameters.that).names
+        except ExpressionError as error:
+            self._add(place_in(written, error.offset), error.message, path)
+            return None
+        wires = tuple(Wire(key, scope.key(key)) for key, _ in names)
+        for wire, (_, offset) in zip(wires, names, strict=True):
+            self.expansion.reads.append(Use(wire.key, Any, place_in(written, offset), path, wire.port))
+        self.expansion.conditions.append(Condition(path, parameters.that, wires, written))
+        return NodeSpec(Check, head.key, name, path, head.location, parameters, given, wires)
 
     def _wires(
-        self, head: Entry, direction: str, ports: dict[str, Any], scope: _Scope, path: str
+        self, head: Entry, direction: str, ports: Iterable[str], scope: Scope, path: str
     ) -> list[tuple[Wire, Location]]:
         """The wires of a body, with keys as the whole tree knows them."""
         node = get(head.node, direction)
@@ -296,10 +266,6 @@ class _Expander:
 
     def _parameters(self, cls: type[Any], head: Entry, body: Node, structural: tuple[str, ...], path: str) -> Any:
         return read_parameters(cls.Parameters, Entry(head.key, head.location, body), structural, path, self.problems)
-
-    def _prefix(self, path: str) -> str:
-        """What goes before the keys inside a subtree: its path without the name of the whole tree."""
-        return path.removeprefix(f"/{self.expansion.definition.name}").lstrip("/") + "/"
 
     def _add(self, place: Node | Location, message: str, path: str) -> None:
         location = place.location if isinstance(place, Node) else place

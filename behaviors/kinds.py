@@ -1,5 +1,6 @@
 """The kinds of nodes that a tree file may name: composites, decorators, subtrees, and the leaves of a registry."""
 
+from behaviors.check_leaf import Check
 from behaviors.composites import COMPOSITES
 from behaviors.decorators import (
     Decorator,
@@ -38,12 +39,12 @@ DECORATORS: dict[str, type[Decorator]] = {
 
 def is_kind(key: str, registry: Registry) -> bool:
     """Whether a key names a kind of node."""
-    return key == "subtree" or key in COMPOSITES or key in DECORATORS or registry.get(key) is not None
+    return key in ("subtree", Check.kind) or key in COMPOSITES or key in DECORATORS or registry.get(key) is not None
 
 
 def unknown_kind(key: str, registry: Registry) -> str:
     """What to say of a key that names no kind of node."""
-    kinds = ("subtree", *COMPOSITES, *DECORATORS)
+    kinds = ("subtree", Check.kind, *COMPOSITES, *DECORATORS)
     is_leaf = key[:1].isupper()
     what, names, where = ("leaf", registry.names, "leaves") if is_leaf else ("node", kinds, "nodes")
     return f'unknown {what} "{key}"{nearest(key, (*kinds, *registry.names))} ({where}: {", ".join(names)})'

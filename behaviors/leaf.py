@@ -26,6 +26,7 @@ class Leaf:
 
     Attributes:
         Parameters: class of the leaf's parameters, decorated with `@parameters`.
+        ends_with: the statuses that it can end with, for the check of what can be reached.
         parameters: the leaf's parameters, in range; may change between ticks.
         context: the robot, the clock and the executor.
         node_path: path of the node that owns the leaf.
@@ -35,6 +36,7 @@ class Leaf:
     """
 
     Parameters: ClassVar[type] = NoParameters
+    ends_with: ClassVar[tuple[Status, ...]] = (Status.SUCCESS, Status.FAILURE)
     parameters: Any
 
     def __init__(self, path: str, context: Context, parameters: Any, ports: dict[str, Slot]) -> None:
@@ -44,6 +46,11 @@ class Leaf:
         self.ports = ports
         self.reason = ""
         self.inhibitors = 0
+
+    @classmethod
+    def least_duration(cls, parameters: Any) -> float:
+        """The least robot time from start to success [s]; 0 where it may succeed in the tick in which it starts."""
+        return 0.0
 
     def setup(self) -> None:
         """Called once before the first tick of the tree."""
@@ -116,6 +123,11 @@ class SkillLeaf(Leaf):
     def __init__(self, path: str, context: Context, parameters: Any, ports: dict[str, Slot]) -> None:
         super().__init__(path, context, parameters, ports)
         self._job: Job | None = None
+
+    @classmethod
+    def least_duration(cls, parameters: Any) -> float:
+        """The latency [s]."""
+        return parameters.latency
 
     def request(self) -> Call | Status:
         """What to compute from the inputs as they are now; or a status with a reason, where not now.

@@ -2,7 +2,7 @@
 
 A file names its tree, declares what comes from outside, and describes one root node; `docs/trees.md` states the rules.
 Reading goes in three steps: `definition.py` reads the frame of each file, `expansion.py` expands subtrees into one tree
-of nodes, `dataflow.py` checks what flows between their ports.
+of nodes, `dataflow.py` checks what flows between their ports, `order.py` in which order.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from pathlib import Path
 from behaviors.dataflow import check_dataflow
 from behaviors.definition import Definition, read_definition
 from behaviors.expansion import expand
+from behaviors.order import check_order
 from behaviors.registry import Registry, leaf
 from behaviors.spec import TreeSpec
 from strict_yaml import Problem, YamlError, load_document, parse_document
@@ -58,9 +59,10 @@ def _leaves(registry: Registry | None) -> Registry:
 
 
 def _load(definition: Definition, registry: Registry) -> TreeSpec:
-    problems = list(definition.problems)
+    problems, remarks = list(definition.problems), list[Problem]()
     expansion = expand(definition, registry, problems)
-    keys = check_dataflow(expansion, problems)
+    keys = check_dataflow(expansion, problems, remarks)
+    check_order(expansion, problems)
     if problems or expansion.root is None:
         raise YamlError(_distinct(problems))
     return TreeSpec(
@@ -72,6 +74,7 @@ def _load(definition: Definition, registry: Registry) -> TreeSpec:
         keys=keys,
         root=expansion.root,
         safe_stop=expansion.safe_stop,
+        remarks=tuple(sorted(_distinct(remarks))),
     )
 
 

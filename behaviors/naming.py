@@ -57,7 +57,7 @@ def _given_name(head: Entry, taken: dict[str, Location], path: str, problems: li
 def _made_name(head: Entry) -> str:
     if head.key == "subtree":
         tree = get(head.node, "tree")
-        return str(tree.value) if tree is not None else "subtree"
+        return str(tree.value).rpartition("/")[2] if tree is not None else "subtree"
     return snake_case(head.key)
 
 

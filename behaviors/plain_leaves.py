@@ -14,6 +14,8 @@ from skills.parameters import parameter, parameters
 class Succeed(Leaf):
     """Succeeds."""
 
+    ends_with = (Status.SUCCESS,)
+
     def tick(self) -> Status:
         """SUCCESS."""
         return self.succeeded()
@@ -22,6 +24,8 @@ class Succeed(Leaf):
 @leaf
 class Fail(Leaf):
     """Fails."""
+
+    ends_with = (Status.FAILURE,)
 
     def tick(self) -> Status:
         """FAILURE."""
@@ -40,7 +44,13 @@ class Wait(Leaf):
     """Waits for some time on the robot's clock."""
 
     Parameters = WaitParameters
+    ends_with = (Status.SUCCESS,)
     parameters: WaitParameters
+
+    @classmethod
+    def least_duration(cls, parameters: WaitParameters) -> float:
+        """The time to wait [s]."""
+        return parameters.duration
 
     def start(self) -> None:
         """The time runs from here."""

@@ -23,17 +23,26 @@ class InputPort(Generic[T]):
         type: what the leaf can take.
         meaning: one line for the operator and the documentation.
         unit: of a number, or of the numbers inside; "1" where there is none.
+        frame: in which the coordinates inside are given; empty where there are none, or the value itself says it.
         default: stands in while nothing is wired or written.
         required: whether it must be wired, and the leaf waits for a value.
         when_missing: status of the leaf while a required value is missing: RUNNING waits, FAILURE gives up.
     """
 
     def __init__(
-        self, type: type[T], meaning: str, unit: str, default: T | None, required: bool, when_missing: Status
+        self,
+        type: type[T],
+        meaning: str,
+        unit: str,
+        frame: str,
+        default: T | None,
+        required: bool,
+        when_missing: Status,
     ) -> None:
         self.type = type
         self.meaning = meaning
         self.unit = unit
+        self.frame = frame
         self.default = default
         self.required = required
         self.when_missing = when_missing
@@ -59,10 +68,11 @@ class Input(InputPort[T]):
         meaning: str,
         *,
         unit: str = "1",
+        frame: str = "",
         default: T | None = None,
         when_missing: Status = Status.RUNNING,
     ) -> None:
-        super().__init__(type, meaning, unit, default, default is None, when_missing)
+        super().__init__(type, meaning, unit, frame, default, default is None, when_missing)
 
     @overload
     def __get__(self, leaf: None, owner: Any) -> Input[T]: ...
@@ -75,8 +85,8 @@ class Input(InputPort[T]):
 class OptionalInput(InputPort[T]):
     """A value that a leaf can do without: reading gives None where nothing is wired or written."""
 
-    def __init__(self, type: type[T], meaning: str, *, unit: str = "1") -> None:
-        super().__init__(type, meaning, unit, None, False, Status.RUNNING)
+    def __init__(self, type: type[T], meaning: str, *, unit: str = "1", frame: str = "") -> None:
+        super().__init__(type, meaning, unit, frame, None, False, Status.RUNNING)
 
     @overload
     def __get__(self, leaf: None, owner: Any) -> OptionalInput[T]: ...
@@ -93,12 +103,14 @@ class Output(Generic[T]):
         type: what the leaf gives.
         meaning: one line for the operator and the documentation.
         unit: of a number, or of the numbers inside; "1" where there is none.
+        frame: in which the coordinates inside are given; empty where there are none, or the value itself says it.
     """
 
-    def __init__(self, type: type[T], meaning: str, *, unit: str = "1") -> None:
+    def __init__(self, type: type[T], meaning: str, *, unit: str = "1", frame: str = "") -> None:
         self.type = type
         self.meaning = meaning
         self.unit = unit
+        self.frame = frame
         self.name = ""
 
     def __set_name__(self, owner: Any, name: str) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 
 from behaviors.leaf import Leaf
 from behaviors.node import Node
-from strict_yaml import Location
+from strict_yaml import Location, Problem
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +77,7 @@ class TreeSpec:
         keys: type of every key on the blackboard.
         root: the tree.
         safe_stop: ticked after a fault; None where there is none.
+        remarks: what may be meant but looks like a mistake, such as a value that nobody reads.
     """
 
     name: str
@@ -87,6 +88,7 @@ class TreeSpec:
     keys: dict[str, Any]
     root: NodeSpec
     safe_stop: NodeSpec | None = None
+    remarks: tuple[Problem, ...] = ()
 
     def __iter__(self) -> Iterator[NodeSpec]:
         yield from self.root

@@ -172,7 +172,8 @@ class _Reader:
         elif isinstance(event, ScalarEvent):
             self._refuse_tag(event, location)
             value = self._resolve(event.value, location) if event.style is None else event.value
-            node = Node(Kind.SCALAR, location, value=value)
+            column = {None: location.column, "'": location.column + 1, '"': location.column + 1}.get(event.style, 0)
+            node = Node(Kind.SCALAR, location, value=value, text_column=column)
             self._count(1, location)
             self._add(node, event.anchor, nodes=1, height=1, key_text=event.value)
         elif isinstance(event, MappingStartEvent | SequenceStartEvent):

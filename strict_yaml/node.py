@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import NamedTuple
 
@@ -37,6 +37,8 @@ class Node:
         entries: of a mapping, in the order of the file; empty otherwise.
         elements: of a sequence; empty otherwise.
         value: of a scalar; None otherwise.
+        text_column: column of the first character of a scalar's text on the line of `location`, behind a quote; 0
+            where the text begins on another line or is none.
     """
 
     kind: Kind
@@ -44,6 +46,7 @@ class Node:
     entries: tuple[Entry, ...] = ()
     elements: tuple[Node, ...] = ()
     value: Scalar = None
+    text_column: int = field(default=0, compare=False)
 
     @property
     def keys(self) -> tuple[str, ...]:

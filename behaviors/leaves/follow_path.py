@@ -16,6 +16,7 @@ from skills.walking import WalkingPhase
 class WaitForGoal(Leaf):
     """Waits until the operator sends a goal that is newer than the last one; a fallen robot takes none."""
 
+    ends_with = (Status.SUCCESS,)
     goal = Output(Goal, "where the robot is sent")
 
     def start(self) -> None:
@@ -60,6 +61,7 @@ class PlanBodyPath(SkillLeaf):
 class FindSubGoal(Leaf):
     """Projects the imminent stance onto the path and looks ahead along it."""
 
+    ends_with = (Status.SUCCESS,)
     path = Input(BodyPath, "way of the body to the goal")
     sub_goal = Output(SubGoal, "where the next steps should lead")
 

@@ -81,6 +81,8 @@ class WaitForSwing(Leaf):
 class WaitUntilStanding(Leaf):
     """Waits until the robot stands on both feet with no step left."""
 
+    ends_with = (Status.SUCCESS,)
+
     def tick(self) -> Status:
         """SUCCESS when it stands."""
         status = self.context.robot.status()
@@ -92,6 +94,8 @@ class WaitUntilStanding(Leaf):
 @leaf
 class PauseWalking(Leaf):
     """Lets the robot finish its step and stand; queued steps are dropped."""
+
+    ends_with = (Status.SUCCESS,)
 
     def tick(self) -> Status:
         """SUCCESS at once."""

@@ -49,8 +49,7 @@ def registry(monkeypatch: pytest.MonkeyPatch) -> Registry:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder with the files of the page, and the shipped trees where a checkout has them."""
-    (tmp_path / "trees").symlink_to(ROOT / "trees")
+    """A folder with the files of the page."""
     for name, text in (
         ("my_leaves.py", LEAF),
         ("my_lookstep.py", RUNNER),

@@ -79,9 +79,9 @@ def test_the_safe_stop_shares_the_keys_of_the_tree_but_not_those_of_its_subtrees
     tree, _ = make(
         """
         tree: t
+        ports: {in: {number: float}}
         root:
           sequence:
-            - GiveNumber: {out: [number]}
             - subtree: {tree: add, in: {x: number}}
         safe_stop:
           sequence:

@@ -14,9 +14,9 @@ from strict_yaml import YamlError
 
 LEAVES = "(leaves: AddOne, GiveNumber, GiveText, PauseWalking, Scripted, Square)"
 NODES = (
-    "(nodes: subtree, sequence, reactive_sequence, selector, reactive_selector, parallel, reactive_parallel, inverter, "
-    "force_success, force_failure, retry, repeat, loop_forever, timeout, rate_limit, run_while, suppress, inhibit, "
-    "reset)"
+    "(nodes: subtree, check, sequence, reactive_sequence, selector, reactive_selector, parallel, reactive_parallel, "
+    "inverter, force_success, force_failure, retry, repeat, loop_forever, timeout, rate_limit, run_while, suppress, "
+    "inhibit, reset)"
 )
 FILE_KEYS = "(keys of a tree file: tree, about, include, ports, root, safe_stop, trees)"
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 from scripted import ScriptedRobot, run, toys
-from test_tree_file_errors import CORPUS
+from test_flow_errors import CORPUS as FLOW_CORPUS
+from test_tree_file_errors import CORPUS as FILE_CORPUS
 
 import behaviors
 from behaviors import Outcome, Registry, Tree, parse_tree
@@ -25,9 +26,10 @@ def test_every_rule_names_tests_that_exist():
         assert files and set(files) <= set(TESTS), number
         for name in re.findall(r"`(test_\w+)`", text):
             assert any(f"def {name}(" in TESTS[file] for file in files), (number, name)
-        for group in re.findall(r"`test_tree_file_errors\.py`:((?:\s+`[^`]+`,?)+)", text):
-            for case in re.findall(r"`([^`]+)`", group):
-                assert case in CORPUS or case.startswith("test_"), (number, case)
+        for file, corpus in (("test_tree_file_errors", FILE_CORPUS), ("test_flow_errors", FLOW_CORPUS)):
+            for group in re.findall(rf"`{file}\.py`:((?:\s+`[^`]+`,?)+)", text):
+                for case in re.findall(r"`([^`]+)`", group):
+                    assert case in corpus or case.startswith("test_"), (number, case)
 
 
 def test_the_example_runs():
