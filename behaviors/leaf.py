@@ -201,7 +201,9 @@ class LeafNode(Node):
         self.active = False
         self.kind = type(leaf).__name__
         inputs = declared_inputs(type(leaf))
-        self._required = tuple((port, leaf.ports[name]) for name, port in inputs.items() if port.required)
+        self._required: tuple[tuple[Any, Slot], ...] = tuple(
+            (port, leaf.ports[name]) for name, port in inputs.items() if port.required
+        )
 
     def run_setup(self) -> None:
         """Call the leaf's setup hook; what it raises is recorded as a fault."""
@@ -219,6 +221,7 @@ class LeafNode(Node):
                 self.reason = f'waits for {port.name}: nothing on "{slot.key}"'
                 return port.when_missing
         leaf.reason = ""
+        self.context.robot.caller = self.path
         if not self.active:
             try:
                 leaf.start()
@@ -237,6 +240,11 @@ class LeafNode(Node):
         """Stop the leaf where it runs."""
         self._halt()
 
+    def replace_leaf(self, leaf: Leaf) -> None:
+        """Let another leaf stand in before the first tick; it does not wait for inputs."""
+        self.leaf = leaf
+        self._required = ()
+
     def set_parameters(self, parameters: Any) -> None:
         """Replace the parameters of node and leaf between two ticks."""
         self.parameters = self.leaf.parameters = parameters
@@ -245,6 +253,7 @@ class LeafNode(Node):
         if not self.active:
             return
         self.active = False
+        self.context.robot.caller = self.path
         try:
             self.leaf.stop()
         except Exception as error:

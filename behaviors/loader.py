@@ -8,6 +8,7 @@ of nodes, `dataflow.py` checks what flows between their ports, `order.py` in whi
 from __future__ import annotations
 
 import importlib
+from collections.abc import Mapping
 from pathlib import Path
 
 from behaviors.dataflow import check_dataflow
@@ -16,20 +17,53 @@ from behaviors.expansion import expand
 from behaviors.order import check_order
 from behaviors.registry import Registry, leaf
 from behaviors.spec import TreeSpec
-from strict_yaml import Problem, YamlError, load_document, parse_document
+from strict_yaml import Node, Problem, YamlError, load_document, parse_document
 
 
-def load_tree(path: str | Path, registry: Registry | None = None) -> TreeSpec:
+class Sources:
+    """The texts of a tree file and of those it includes, as they are read.
+
+    Args:
+        texts: to read from, by path, instead of from the disk; None for the disk.
+    """
+
+    def __init__(self, texts: Mapping[str, str] | None = None) -> None:
+        self.texts: dict[str, str] = {}
+        self._given = texts
+
+    def read(self, path: Path) -> Node:
+        """The content of a file.
+
+        Raises:
+            YamlError: where it cannot be read.
+        """
+        if self._given is None:
+            document = load_document(path)
+            self.texts[str(path)] = path.read_text(encoding="utf-8")
+            return document
+        # A shipped tree lies elsewhere on another machine.
+        by_name = {Path(name).name: text for name, text in self._given.items()}
+        text = self._given.get(str(path), by_name.get(path.name))
+        if text is None:
+            return load_document(path)
+        self.texts[str(path)] = text
+        return parse_document(text, str(path))
+
+
+def load_tree(path: str | Path, registry: Registry | None = None, texts: Mapping[str, str] | None = None) -> TreeSpec:
     """Read a tree file.
 
     Args:
         path: the file.
-        registry: the leaves it may name; all that are shipped where None.
+        registry: the leaves it may name; all that are shipped or installed where None.
+        texts: what the files hold, by path, where they are not to be read from the disk.
 
     Raises:
         YamlError: where the file or one that it includes has problems; holds all of them.
     """
-    return _load(read_definition(load_document(path), _leaves(registry)), _leaves(registry))
+    sources = Sources(texts)
+    document = sources.read(Path(path))
+    return _load(read_definition(document, _leaves(registry), sources.read), _leaves(registry), sources)
 
 
 def parse_tree(text: str, registry: Registry | None = None, file: str = "<text>") -> TreeSpec:
@@ -38,7 +72,11 @@ def parse_tree(text: str, registry: Registry | None = None, file: str = "<text>"
     Raises:
         YamlError: as `load_tree`.
     """
-    return _load(read_definition(parse_document(text, file), _leaves(registry)), _leaves(registry))
+    sources = Sources()
+    sources.texts[file] = text
+    return _load(
+        read_definition(parse_document(text, file), _leaves(registry), sources.read), _leaves(registry), sources
+    )
 
 
 def check(path: str | Path, registry: Registry | None = None) -> tuple[Problem, ...]:
@@ -58,7 +96,7 @@ def _leaves(registry: Registry | None) -> Registry:
     return leaf
 
 
-def _load(definition: Definition, registry: Registry) -> TreeSpec:
+def _load(definition: Definition, registry: Registry, sources: Sources) -> TreeSpec:
     problems, remarks = list(definition.problems), list[Problem]()
     expansion = expand(definition, registry, problems)
     keys = check_dataflow(expansion, problems, remarks)
@@ -75,6 +113,7 @@ def _load(definition: Definition, registry: Registry) -> TreeSpec:
         root=expansion.root,
         safe_stop=expansion.safe_stop,
         remarks=tuple(sorted(_distinct(remarks))),
+        sources=sources.texts,
     )
 
 

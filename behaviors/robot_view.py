@@ -7,6 +7,8 @@ the world here, and every command is moved back.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 from behaviors.robot import Robot
 from skills.footsteps.footstep import Footstep
 from skills.geometry.camera import DepthImage
@@ -14,7 +16,22 @@ from skills.geometry.lidar import LidarScan
 from skills.geometry.pose import IDENTITY, Pose
 from skills.walking.walking_state import RobotState, StepEvent, WalkingStatus
 
-Command = tuple[str, tuple[Footstep, ...]]
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Command:
+    """What a node told the robot.
+
+    Attributes:
+        name: of the robot's method.
+        node: path of the node.
+        steps: its argument in the world; empty where it takes none.
+        sent: the same in the frame of the robot's odometry, as it was sent.
+    """
+
+    name: str
+    node: str
+    steps: tuple[Footstep, ...] = ()
+    sent: tuple[Footstep, ...] = ()
 
 
 class RobotView:
@@ -24,7 +41,9 @@ class RobotView:
         robot: the robot itself.
         time: robot time at the start of the tick [s].
         events: step events since the last tick, oldest first; drained once, so that no leaf takes them from another.
-        commands: names and arguments of the commands sent this tick, in order.
+        commands: those sent this tick, in order.
+        corrections: nodes that said how the estimate lies in the world this tick, and what they said.
+        caller: path of the node that is ticked now.
         T_world_odometry: what takes the robot's estimates into the world.
     """
 
@@ -33,6 +52,8 @@ class RobotView:
         self.time = robot.time
         self.events: tuple[StepEvent, ...] = ()
         self.commands: list[Command] = []
+        self.corrections: list[tuple[str, Pose]] = []
+        self.caller = ""
         self.T_world_odometry = IDENTITY
         self._estimated_state: RobotState | None = None
         self._estimated_status: WalkingStatus | None = None
@@ -40,10 +61,12 @@ class RobotView:
         self._status: WalkingStatus | None = None
 
     def begin_tick(self) -> None:
-        """Forget the last tick's snapshot and take the events since."""
-        self._estimated_state = self._state = None
-        self._estimated_status = self._status = None
+        """Take this tick's snapshot and the events since the last one."""
+        # Taken now, not when first asked for: what a leaf sees must not depend on who was asked before it.
+        self._estimated_state, self._estimated_status = self.robot.state(), self.robot.status()
+        self._state = self._status = None
         self.commands = []
+        self.corrections = []
         self.time = self.robot.time
         events = self.robot.drain_events()
         self.events = tuple(event.moved(self.T_world_odometry) for event in events) if self._corrected else events
@@ -51,6 +74,7 @@ class RobotView:
     def correct(self, T_world_odometry: Pose) -> None:
         """Say what takes the robot's estimates into the world from now on, this tick's snapshot included."""
         self.T_world_odometry = T_world_odometry
+        self.corrections.append((self.caller, T_world_odometry))
         self._state = self._status = None
 
     def state(self) -> RobotState:
@@ -83,15 +107,16 @@ class RobotView:
 
     def send_footsteps(self, steps: tuple[Footstep, ...]) -> None:
         """Replace all queued steps; the step whose swing is under way goes on."""
-        self.commands.append(("send_footsteps", steps))
+        sent = steps
         if self._corrected:
             T_odometry_world = self.T_world_odometry.inverse
-            steps = tuple(step.moved(T_odometry_world) for step in steps)
-        self.robot.send_footsteps(steps)
+            sent = tuple(step.moved(T_odometry_world) for step in steps)
+        self.commands.append(Command("send_footsteps", self.caller, steps, sent))
+        self.robot.send_footsteps(sent)
 
     def pause_walking(self) -> None:
         """Finish the current step, then stand; queued steps are dropped."""
-        self.commands.append(("pause_walking", ()))
+        self.commands.append(Command("pause_walking", self.caller))
         self.robot.pause_walking()
 
     @property

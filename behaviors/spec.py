@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 from behaviors.leaf import Leaf
@@ -78,6 +78,7 @@ class TreeSpec:
         root: the tree.
         safe_stop: ticked after a fault; None where there is none.
         remarks: what may be meant but looks like a mistake, such as a value that nobody reads.
+        sources: texts of the files that it was read from, by path.
     """
 
     name: str
@@ -89,6 +90,7 @@ class TreeSpec:
     root: NodeSpec
     safe_stop: NodeSpec | None = None
     remarks: tuple[Problem, ...] = ()
+    sources: Mapping[str, str] = field(default_factory=dict)
 
     def __iter__(self) -> Iterator[NodeSpec]:
         yield from self.root

@@ -28,7 +28,7 @@ from behaviors.robot import Robot
 from behaviors.robot_view import RobotView
 from behaviors.spec import TreeSpec
 from behaviors.timetable import Timetable
-from behaviors.trace import ParameterChange, Trace
+from behaviors.trace import Happened, ParameterChange, Trace
 from strict_yaml import nearest
 
 DEFAULT_RATE = 50.0
@@ -125,6 +125,7 @@ class Tree:
         self._pending_inputs: list[tuple[str, Any]] = []
         self._pending_events: list[OperatorEvent] = []
         self._changes: list[ParameterChange] = []
+        self._delivered: tuple[str, ...] = ()
         self._ticks = 0
         self._is_set_up = False
         self._is_stopped = False
@@ -246,7 +247,9 @@ class Tree:
         inputs, self._pending_inputs = self._pending_inputs, []
         for key, value in inputs:
             self.blackboard.slot(key, None).write(value)
-        for job in context.executor.deliver(context.time):
+        delivered = context.executor.deliver(context.time)
+        self._delivered = tuple(job.path for job in delivered)
+        for job in delivered:
             if job.digest is not None:
                 self.trace.prime(job.result, job.digest)
 
@@ -280,6 +283,7 @@ class Tree:
     def _pause_walking(self) -> None:
         """What remains where nothing else says how to stop."""
         self._is_stopped = True
+        self.context.robot.caller = "/safe_stop"
         try:
             self.context.robot.pause_walking()
         except Exception as error:
@@ -297,10 +301,11 @@ class Tree:
     def _record_trace(self) -> None:
         changes, self._changes = tuple(self._changes), []
         context = self.context
+        happened = Happened(context.operator_events, changes, self._delivered)
         try:
-            self.trace.record(
-                context.tick, context.time, self.nodes, self._slots, context.robot, context.operator_events, changes
-            )
+            if context.tick == 0:
+                self.trace.begin(self.spec, 1.0 / self.timetable.period, self.nodes, self._slots)
+            self.trace.record(context.tick, context.time, self.nodes, self._slots, context.robot, happened)
         except Exception as error:
             context.record_fault(f"/{self.spec.name}", "trace", error)
             if self.outcome is not Outcome.ERROR:

@@ -104,6 +104,24 @@ def load_configuration(preset: str | None = None, assignments: Iterable[str] = (
     return Configuration(**instances)
 
 
+def with_assignments(configuration: Configuration, assignments: Iterable[str]) -> Configuration:
+    """A configuration with `subject.key=value` assignments over it.
+
+    Raises:
+        YamlError: with every problem found.
+    """
+    problems: list[Problem] = []
+    instances = configuration.by_subject()
+    for subject, node in _assignments(assignments, problems).items():
+        read = read_dataclass(node, SUBJECTS[subject], problems, subject)
+        if read is not None:
+            given = {key: getattr(read, key) for key in node.keys}
+            instances[subject] = dataclasses.replace(instances[subject], **given)
+    if problems:
+        raise YamlError(problems)
+    return Configuration(**instances)
+
+
 def split_assignments(assignments: Iterable[str]) -> Assignments:
     """Sort `--set` assignments by what they are for."""
     subjects: list[str] = []

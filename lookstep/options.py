@@ -25,7 +25,7 @@ class RunOptions:
         preset: name of a shipped preset, or a YAML file.
         assignments: `subject.key=value`, `course.option=value` or `/node/path.key=value`.
         record: recording file to write.
-        out: folder for `summary.json` and `trace.jsonl`.
+        out: folder for `summary.json`, `trace.jsonl` and `run.json`, from which the run can be replayed.
     """
 
     tree: str = "look_and_step"

@@ -19,6 +19,7 @@ from lookstep.configuration import Assignments, Configuration, load_configuratio
 from lookstep.errors import UserError
 from lookstep.moment import Moment, Observer
 from lookstep.options import RunOptions
+from lookstep.run_file import RUN_FILE, TRACE_FILE, RunFile
 from lookstep.statistics import Statistics
 from lookstep.summary import Outcome, Summary, installed_versions
 from lookstep.trees import tree_path
@@ -54,7 +55,18 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
     for folder in filter(None, (options.out, options.record and options.record.parent)):
         folder.mkdir(parents=True, exist_ok=True)
     if options.out is not None:
-        tree.trace = Trace(options.out / "trace.jsonl")
+        tree.trace = Trace(options.out / TRACE_FILE)
+        run_file = RunFile(
+            options=options,
+            configuration=configuration,
+            course=course,
+            goal=options.goal or course.goal,
+            nodes=assignments.nodes,
+            tree=spec.file,
+            sources=spec.sources,
+            versions=installed_versions(),
+        )
+        run_file.write(options.out / RUN_FILE)
     warm_up(configuration)
     statistics = Statistics(world, configuration)
     watching: list[Observer] = [statistics, *observers]

@@ -18,6 +18,7 @@ from scripted import Scripted, ScriptedRobot, footstep, leaf_of, make, run, toys
 
 from behaviors import Executor, Leaf, OperatorEvent, Outcome, Output, Registry, Status, Trace, Tree, parse_tree
 from behaviors.canonical import CanonicalError, digest, encode
+from behaviors.values import ValueFormatError, from_json, is_small, to_json
 from skills.footsteps.footstep import FootstepPlan, PlanOutcome
 from skills.geometry.pose import Pose
 
@@ -121,13 +122,20 @@ def test_the_file_has_one_line_a_tick_with_what_changed(tmp_path: Path):
     tree.send(OperatorEvent("approve"))
     run(tree, robot, 3)
     tree.shutdown()
-    first, second, third = map(json.loads, (tmp_path / "trace.jsonl").read_text().splitlines())
+    head, first, second, third = map(json.loads, (tmp_path / "trace.jsonl").read_text().splitlines())
+    assert [(node["path"], node["kind"]) for node in head["nodes"]] == [
+        ("/t", "sequence"),
+        ("/t/scripted", "Scripted"),
+        ("/t/give_steps", "GiveSteps"),
+    ]
+    assert head["nodes"][2]["out"] == {"plan": "plan"} and head["keys"] == {"plan": "FootstepPlan"}
     assert first["status"] == {"/t": "RUNNING", "/t/scripted": "RUNNING", "/t/give_steps": "INVALID"}
     assert first["reason"]["/t/scripted"] == "said R"
-    assert first["operator"] == [{"name": "approve", "value": "None"}]
+    assert first["operator"] == [{"name": "approve", "value": None}]
     assert second["status"] == {"/t/scripted": "SUCCESS", "/t/give_steps": "RUNNING"}
     assert list(second["ports"]) == ["plan"]
-    assert set(third) == {"tick", "time", "hash"}
+    assert from_json(second["values"]["plan"]).steps[1].sequence_id == 1
+    assert set(third) == {"tick", "time", "hash", "robot", "ticked"}
     assert third["hash"] == tree.trace.hash
 
 
@@ -234,3 +242,40 @@ def test_a_value_without_canonical_bytes_is_refused():
         encode(object())
     with pytest.raises(CanonicalError):
         encode(np.array([object()]))
+
+
+def test_a_value_that_is_written_and_read_back_has_the_same_bits():
+    for value in DIFFERENT:
+        back = from_json(json.loads(json.dumps(to_json(value))))
+        assert type(back) is type(value) and encode(back) == encode(value)
+    plan = plan_with(0.1 + 0.2)
+    assert encode(from_json(json.loads(json.dumps(to_json(plan))))) == encode(plan)
+
+
+@settings(max_examples=100, deadline=None, derandomize=True)
+@given(_values)
+def test_any_value_is_written_and_read_back(value: Any):
+    assert encode(from_json(json.loads(json.dumps(to_json(value))))) == encode(value)
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        {"a": 1},
+        {"$class": "os:system", "fields": {}},
+        {"$class": "nothing.loaded:Thing", "fields": {}},
+        {"$class": "subprocess:Popen", "fields": {"args": ["true"]}},
+        {"$enum": "os:environ", "name": "PATH"},
+        {"$array": "|O", "shape": [1], "data": ""},
+        {"$array": "<f8", "shape": [3], "data": ""},
+        {"$tuple": 3},
+    ],
+)
+def test_what_is_no_value_of_a_trace_is_refused_and_nothing_is_run(data: Any):
+    with pytest.raises(ValueFormatError):
+        from_json(data)
+
+
+def test_a_value_is_small_by_what_it_holds():
+    assert is_small(plan_with(0.4), 16_384) and not is_small(plan_with(0.4), 100)
+    assert not is_small((np.zeros(3000),), 16_384) and not is_small({"a": "x" * 20_000}, 16_384)
