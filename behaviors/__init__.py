@@ -11,7 +11,7 @@ from behaviors.context import Context, Fault, LogLine, OperatorEvent
 from behaviors.drawing import DrawnLine, draw, drawn_lines
 from behaviors.executor import Executor, ExecutorMode, JobOutcome, JobRecord
 from behaviors.leaf import Call, Leaf, SkillLeaf, SkillParameters
-from behaviors.loader import check, load_tree, parse_tree
+from behaviors.loader import check, known_leaves, load_tree, parse_tree
 from behaviors.node import Node
 from behaviors.ports import Input, OptionalInput, Output
 from behaviors.registry import RegistrationError, Registry, leaf
@@ -55,6 +55,7 @@ __all__ = [
     "check",
     "draw",
     "drawn_lines",
+    "known_leaves",
     "leaf",
     "load_tree",
     "parse_tree",

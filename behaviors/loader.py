@@ -8,7 +8,9 @@ of nodes, `dataflow.py` checks what flows between their ports, `order.py` in whi
 from __future__ import annotations
 
 import importlib
+import sys
 from collections.abc import Mapping
+from importlib.metadata import entry_points
 from pathlib import Path
 
 from behaviors.dataflow import check_dataflow
@@ -17,7 +19,9 @@ from behaviors.expansion import expand
 from behaviors.order import check_order
 from behaviors.registry import Registry, leaf
 from behaviors.spec import TreeSpec
-from strict_yaml import Node, Problem, YamlError, load_document, parse_document
+from strict_yaml import Location, Node, Problem, YamlError, load_document, parse_document
+
+ENTRY_POINTS = "lookstep.leaves"
 
 
 class Sources:
@@ -88,12 +92,27 @@ def check(path: str | Path, registry: Registry | None = None) -> tuple[Problem, 
     return ()
 
 
-def _leaves(registry: Registry | None) -> Registry:
-    if registry is not None:
-        return registry
+def known_leaves() -> Registry:
+    """The shipped leaves, and those of installed packages that have an entry point in the group `lookstep.leaves`.
+
+    Raises:
+        YamlError: where a package's leaves cannot be loaded.
+    """
     importlib.import_module("behaviors.leaves")
     importlib.import_module("behaviors.plain_leaves")
+    for entry in entry_points(group=ENTRY_POINTS):
+        if entry.value.partition(":")[0] not in sys.modules:
+            try:
+                entry.load()
+            except Exception as error:
+                place = Location(f'entry point "{entry.name}" of {ENTRY_POINTS}', 0, 0)
+                message = f"cannot load {entry.value}: {type(error).__name__}: {error}"
+                raise YamlError([Problem(place, message)]) from error
     return leaf
+
+
+def _leaves(registry: Registry | None) -> Registry:
+    return known_leaves() if registry is None else registry
 
 
 def _load(definition: Definition, registry: Registry, sources: Sources) -> TreeSpec:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from behaviors.bodies import get
 from strict_yaml import Entry, Location, Problem
 
-_NODE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_ -]*")
+NODE_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_ -]*")
 
 
 def sibling_names(heads: Sequence[Entry], path: str, problems: list[Problem]) -> list[str]:
@@ -43,7 +43,7 @@ def _given_name(head: Entry, taken: dict[str, Location], path: str, problems: li
     if node is None:
         return ""
     name = node.value
-    if not isinstance(name, str) or not _NODE_NAME.fullmatch(name):
+    if not isinstance(name, str) or not NODE_NAME.fullmatch(name):
         message = f'got {node.describe()}; a name is letters, digits, spaces, "_" and "-"'
         problems.append(Problem(node.location, message, path))
         return ""

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import dataclasses
 import importlib
+import os
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -14,8 +15,7 @@ from scripted import ScriptedRobot, footstep, run
 
 import behaviors
 from behaviors import Outcome, Registry, Tree, draw, load_tree
-from behaviors.blackboard import type_name
-from behaviors.leaf import declared_inputs, declared_outputs
+from behaviors.text import leaf_table
 from skills.footsteps import FootstepParameters
 from skills.geometry.pose import Pose
 from skills.height_map import HeightMapParameters
@@ -25,9 +25,10 @@ from strict_yaml import YamlError, parse_document
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "leaves.md").read_text(encoding="utf-8")
-LEAF, RUNNER = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+(LEAF,) = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+(PACKAGE,) = re.findall(r"```toml\n(.*?)```", PAGE, re.DOTALL)
 TREE, BROKEN = re.findall(r"```yaml\n(.*?)```", PAGE, re.DOTALL)
-DRAWING, PROBLEMS = re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)
+MODELINE, DRAWING, PROBLEMS = re.findall(r"```text\n(.*?)```", PAGE, re.DOTALL)
 
 
 def shipped_leaves() -> Registry:
@@ -52,7 +53,6 @@ def folder(tmp_path: Path) -> Path:
     """A folder with the files of the page."""
     for name, text in (
         ("my_leaves.py", LEAF),
-        ("my_lookstep.py", RUNNER),
         ("a_few_steps.yaml", TREE),
         ("broken.yaml", BROKEN),
     ):
@@ -93,10 +93,40 @@ def test_check_says_what_the_page_shows(folder):
     assert [re.sub(r"\(leaves: .*\)", "(leaves: ...)", line) for line in told] == PROBLEMS.splitlines()
 
 
-def test_the_command_line_knows_the_leaf_by_the_pages_script(folder):
-    command = [sys.executable, "my_lookstep.py", "check", "a_few_steps.yaml"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+def test_the_command_line_knows_the_leaf_by_the_pages_option(folder):
+    done = lookstep(["--leaves", "my_leaves.py", "check", "a_few_steps.yaml"], folder)
     assert (done.returncode, done.stdout) == (0, "a_few_steps.yaml: sound (tree)\n"), done.stderr
+
+
+def test_the_leaves_of_an_installed_package_are_known_by_its_entry_point(folder):
+    entry_points = tomllib.loads(PACKAGE)["project"]["entry-points"]["lookstep.leaves"]
+    ((name, module),) = entry_points.items()
+    site = folder / "site"
+    package, _, file = module.partition(".")
+    (site / package).mkdir(parents=True)
+    (site / package / "__init__.py").write_text("")
+    (site / package / f"{file}.py").write_text(LEAF)
+    metadata = site / "my_robot_behaviors-1.0.dist-info"
+    metadata.mkdir()
+    (metadata / "METADATA").write_text("Metadata-Version: 2.1\nName: my-robot-behaviors\nVersion: 1.0\n")
+    (metadata / "entry_points.txt").write_text(f"[lookstep.leaves]\n{name} = {module}\n")
+    done = lookstep(["check", "a_few_steps.yaml"], folder, path=site)
+    assert (done.returncode, done.stdout) == (0, "a_few_steps.yaml: sound (tree)\n"), done.stderr
+    (site / package / f"{file}.py").write_text("import nothing_at_all")
+    done = lookstep(["check", "a_few_steps.yaml"], folder, path=site)
+    assert done.returncode == 2
+    assert f'entry point "{name}" of lookstep.leaves: cannot load {module}: ModuleNotFoundError' in done.stderr
+
+
+def lookstep(arguments: list[str], folder: Path, path: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Run a command in a process of its own."""
+    environment = {**os.environ, "PYTHONPATH": "" if path is None else str(path)}
+    command = [sys.executable, "-m", "lookstep", *arguments]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, env=environment)
+
+
+def test_the_modeline_is_the_one_that_schema_prints():
+    assert MODELINE.strip() == "# yaml-language-server: $schema=.schemas/tree.schema.json"
 
 
 def test_the_setting_that_the_page_names_exists(registry, folder):
@@ -110,18 +140,7 @@ def test_the_setting_that_the_page_names_exists(registry, folder):
 def test_the_table_lists_every_shipped_leaf_with_its_ports_and_parameters():
     # Other tests may have registered leaves of their own.
     shipped = [cls for cls in shipped_leaves().classes if cls.__module__.startswith("behaviors.")]
-    assert re.findall(r"^\| `[A-Z].*$", PAGE, re.MULTILINE) == [row(cls) for cls in shipped]
-
-
-def row(cls: type) -> str:
-    """The line of a leaf."""
-    ports = [
-        ", ".join(f"`{name}: {type_name(port.type)}`" for name, port in declared(cls).items())
-        for declared in (declared_inputs, declared_outputs)
-    ]
-    numbers = []
-    for field in dataclasses.fields(cls.Parameters):  # type: ignore[attr-defined]
-        unit = "" if field.metadata["unit"] == "1" else f" {field.metadata['unit']}"
-        numbers.append(f"`{field.name}` {field.default:g}{unit}")
-    does = (cls.__doc__ or "").splitlines()[0]
-    return f"| `{cls.__name__}` | {does} | {ports[0]} | {ports[1]} | {', '.join(numbers)} |"
+    registry = Registry()
+    for cls in shipped:
+        registry(cls)
+    assert leaf_table(registry) in PAGE

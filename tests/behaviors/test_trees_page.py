@@ -6,8 +6,8 @@ import re
 from pathlib import Path
 
 import pytest
+from flow_corpus import CORPUS as FLOW_CORPUS
 from scripted import ScriptedRobot, run, toys
-from test_flow_errors import CORPUS as FLOW_CORPUS
 from test_tree_file_errors import CORPUS as FILE_CORPUS
 
 import behaviors
