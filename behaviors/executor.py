@@ -182,6 +182,17 @@ class Executor:
             job.future.cancel()
             self._record(job, time, JobOutcome.CANCELLED)
 
+    def cancel_all(self, path: str, time: float) -> None:
+        """Drop all that a node has under way."""
+        for job in self.pending:
+            if job.path == path:
+                self.cancel(job, time)
+
+    @property
+    def pending(self) -> tuple[Job, ...]:
+        """What is under way, in the order in which it is due."""
+        return tuple(self._pending)
+
     def drain_records(self) -> tuple[JobRecord, ...]:
         """The jobs that ended since the last call, in the order in which they ended."""
         records, self._records = tuple(self._records), []

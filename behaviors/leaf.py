@@ -259,6 +259,8 @@ class LeafNode(Node):
         except Exception as error:
             # Others must be stopped as well: the tree looks for recorded faults when the tick is over.
             self.context.record_fault(self.path, "stop", error)
+        # Also where a leaf's own hook has forgotten it, or did not come so far.
+        self.context.executor.cancel_all(self.path, self.context.time)
 
 
 def declared_ports(cls: type[Leaf]) -> dict[str, Any]:

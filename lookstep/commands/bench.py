@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from lookstep.bench.footsteps import command as footsteps
 from lookstep.bench.perception import command as perception
+from lookstep.bench.tree import command as tree
 from lookstep.errors import UserError
 
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ NAME = "bench"
 HELP = "measure one part beside ground truth, baselines and peers"
 EXAMPLE = "lookstep bench perception --quick"
 
-SUBJECTS: tuple[Subject, ...] = (perception, footsteps)
+SUBJECTS: tuple[Subject, ...] = (perception, footsteps, tree)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -8,6 +8,7 @@ from lookstep.__main__ import main
 from lookstep.bench.markdown import markdown
 from lookstep.bench.perception import report
 from lookstep.bench.perception.report import Extent
+from lookstep.bench.tree import report as tree_report
 from lookstep.commands.bench import SUBJECTS
 
 
@@ -36,6 +37,16 @@ def test_perception_writes_its_figures_for_programs_and_people(least, tmp_path, 
     told = capsys.readouterr().out
     assert "recall" in told
     assert "…" not in told  # No cell is cut off on a terminal of 80 columns.
+
+
+def test_tree_writes_its_figures_beside_those_of_plain_py_trees(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(tree_report, "_TICKS", 10)
+    figures_file = tmp_path / "figures.json"
+    assert main(["bench", "tree", "--quick", "--json", str(figures_file)]) == 0
+    figures = json.loads(figures_file.read_text())
+    assert figures["nodes"] == 60 and figures["ticks"] == 100
+    assert min(figures[key] for key in ("tick_us_median", "written_tick_us_median", "plain_tick_us_median")) > 0.0
+    assert figures["ratio"] > 0.0
 
 
 @pytest.mark.parametrize("subject", SUBJECTS, ids=lambda subject: subject.NAME)
