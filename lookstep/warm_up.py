@@ -6,15 +6,18 @@ step. The first time on a machine this compiles, later it loads from the disk ca
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 
 from lookstep.configuration import Configuration
 from lookstep.world import build_world
 from sim_envs.courses import load_course
 from skills.body_path import straight_path, sub_goal
-from skills.footsteps import plan_from_stance, terrain_ahead
+from skills.footsteps import Side, plan_footsteps, plan_from_stance, stand_on, terrain_ahead
+from skills.geometry import Pose
 from skills.height_map import HeightMapper
-from skills.regions import MapParameters, RegionMemory, examine_regions, remember
+from skills.regions import MapParameters, PlanarRegion, PlanarRegions, RegionMemory, examine_regions, remember
 
 
 def warm_up(configuration: Configuration) -> None:
@@ -38,3 +41,16 @@ def warm_up(configuration: Configuration) -> None:
     plan = plan_from_stance(terrain, stance, goal, configuration.footsteps)
     world.send_footsteps(plan.steps)
     world.advance(0.1)
+    warm_up_planner(configuration)
+
+
+def warm_up_planner(configuration: Configuration) -> None:
+    """Plan over a beam so narrow that feet must be moved to its middle and stand on it in part; then once more."""
+    parameters = dataclasses.replace(configuration.footsteps, share=0.5)
+    stance = stand_on(PlanarRegions((), 0.0, 0), np.zeros(4), parameters, configuration.terrain)
+    outline = 0.5 * np.array(((-4.0, -0.37), (4.0, -0.37), (4.0, 0.37), (-4.0, 0.37)))
+    beam = PlanarRegion(Pose.from_xyz_rpy((1.0, 0.01, 0.0)), outline, (outline,), 1.48, 0.0)
+    goal = sub_goal(straight_path(np.zeros(3), np.array((3.0, 0.0, 0.0))), stance, configuration.sub_goal)
+    terrain = terrain_ahead(PlanarRegions((beam,), 0.0, 0), stance, goal, parameters, configuration.terrain)
+    plan = plan_footsteps(terrain, stance, Side.LEFT, goal, parameters)
+    plan_footsteps(terrain, stance, Side.LEFT, goal, parameters, reference=plan)

@@ -2,7 +2,8 @@
 
 from skills.footsteps.footstep import Footstep, FootstepPlan, PlanOutcome, Side, Stance
 from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
-from skills.footsteps.footstep_planner import plan_footsteps, plan_from_stance, terrain_ahead, whole_sole
+from skills.footsteps.footstep_planner import plan_footsteps, plan_from_stance, terrain_ahead
+from skills.footsteps.planned_steps import whole_sole
 from skills.footsteps.swing_clearance import SwingClearance, swing_clearance
 from skills.footsteps.terrain import Foothold, RegionTerrain, Terrain, region_terrain
 from skills.footsteps.whole_way import plan_whole_way, stand_on

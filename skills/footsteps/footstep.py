@@ -76,6 +76,7 @@ class Footstep:
         swing_duration, transfer_duration: time in the air, and in double support before it [s].
         swing_height: how far the sole rises above the higher end of its way [m].
         swing_waypoints_world: sole positions to pass on the way, (K, 3), may be empty [m].
+        margin: distance of the whole sole from the edges of its region, no more than was wanted; negative over one [m].
     """
 
     sequence_id: int
@@ -86,6 +87,7 @@ class Footstep:
     transfer_duration: float
     swing_height: float
     swing_waypoints_world: Array
+    margin: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "foothold_sole", readonly(self.foothold_sole, (None, 2)))
@@ -124,6 +126,7 @@ class FootstepPlan:
         cost: sum of the edge costs.
         expansions: nodes the search expanded.
         rejections: number of rejected edges by reason, for the operator.
+        kept_steps: how many of the first steps are those of the plan before.
     """
 
     plan_id: int
@@ -134,3 +137,4 @@ class FootstepPlan:
     cost: float
     expansions: int
     rejections: tuple[tuple[str, int], ...] = ()
+    kept_steps: int = 0

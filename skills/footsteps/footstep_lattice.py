@@ -1,4 +1,7 @@
-"""The lattice of poses over which footsteps are searched, anchored at the stance foot."""
+"""The lattice of poses over which footsteps are searched: places from the stance foot on, headings along the path.
+
+Headings that followed the stance foot's would make every step pay for how that foot happens to be turned.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from skills.footsteps.footstep_parameters import FootstepParameters
 from skills.footsteps.search_space import LATTICE
 from skills.footsteps.search_target import SearchTarget
 from skills.footsteps.terrain import Foothold, Terrain, sole_on_slope
-from skills.geometry.pose import Array
+from skills.geometry.pose import Array, wrap_angle
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,9 +25,9 @@ class FootstepLattice:
 
     Attributes:
         shape: number of floors, headings, ny, nx.
-        start: floor, heading, iy and ix of the stance foot.
+        start: floor, nearest heading, iy and ix of the stance foot.
         anchor_world: where the stance foot is, (3,) [m].
-        yaw: its heading [rad].
+        yaw: the lattice's heading that is nearest to its own [rad].
         spacing: distance of two nodes [m].
         turn: angle between two headings [rad].
     """
@@ -45,11 +48,13 @@ class FootstepLattice:
         x_before, y_before = (max(0, int(n)) for n in (anchor.p[:2] - target.low_world) / parameters.lattice)
         x_after, y_after = (max(0, int(n)) for n in (target.high_world - anchor.p[:2]) / parameters.lattice)
         turn = 2 * np.pi / parameters.headings
+        way = float(target.path_world[-1, 2])
+        yaw = way + turn * round(wrap_angle(anchor.yaw - way) / turn)
         most = target.turn(anchor.yaw, parameters)
         headings = min(2 * int(np.ceil(most / turn)) + 1, parameters.headings)
         shape = (terrain.raster.cells.shape[0], headings, y_before + y_after + 1, x_before + x_after + 1)
         start = (terrain.floor(anchor.p), headings // 2, y_before, x_before)
-        return cls(shape, start, anchor.p, anchor.yaw, parameters.lattice, turn)
+        return cls(shape, start, anchor.p, yaw, parameters.lattice, turn)
 
     @property
     def stances(self) -> int:

@@ -35,6 +35,7 @@ class FootstepParameters:
     outward_yaw: float = parameter(radians(20.0), unit="rad", meaning="largest turn outwards", minimum=0.0, maximum=1.5)
     uphill_drop: float = parameter(0.12, unit="m", meaning="largest drop off a foot that stands uphill", minimum=0.0)
     uphill_slope: float = parameter(radians(8.0), unit="rad", meaning="slope from which a foot stands uphill")
+    in_place: float = parameter(0.02, unit="m", meaning="a foot moved less, and not turned, is stuck", minimum=0.0)
     swing_reach: float = parameter(0.95, unit="m", meaning="longest way of a foot in the air", minimum=0.1)
     swing_height_change: float = parameter(0.45, unit="m", meaning="largest rise or drop of a foot in the air")
 
@@ -47,8 +48,14 @@ class FootstepParameters:
     cliff_toe: float = parameter(0.04, unit="m", meaning="distance before the toe without a cliff", minimum=0.0)
     cliff_side: float = parameter(0.02, unit="m", meaning="distance from heel and sides without a cliff", minimum=0.0)
 
-    body_width: float = parameter(0.45, unit="m", meaning="width of the body, for walls", minimum=0.0, maximum=2.0)
-    body_depth: float = parameter(0.30, unit="m", meaning="depth of the body, for walls", minimum=0.0, maximum=2.0)
+    shin_height: float = parameter(0.3, unit="m", meaning="highest ground before the shin", minimum=0.0)
+    shin_toe: float = parameter(0.08, unit="m", meaning="distance before the toe that the shin needs", minimum=0.0)
+    shin_side: float = parameter(0.04, unit="m", meaning="distance from heel and sides that it needs", minimum=0.0)
+    drop_depth: float = parameter(0.1, unit="m", meaning="deepest ground beside the sole", minimum=0.0)
+    drop_distance: float = parameter(0.0, unit="m", meaning="distance from the sole without a drop", minimum=0.0)
+
+    body_width: float = parameter(0.45, unit="m", meaning="width of the body, for obstacles", minimum=0.0, maximum=2.0)
+    body_depth: float = parameter(0.30, unit="m", meaning="depth of the body, for obstacles", minimum=0.0, maximum=2.0)
     body_base: float = parameter(0.45, unit="m", meaning="height over the feet of the body's lower end", minimum=0.0)
     body_top: float = parameter(1.7, unit="m", meaning="height over the feet of its upper end", minimum=0.0)
     step_over: float = parameter(
@@ -62,14 +69,22 @@ class FootstepParameters:
     width_cost: float = parameter(0.2, unit="1/m", meaning="cost of a width off the ideal", minimum=0.0)
     path_cost: float = parameter(0.2, unit="1/m", meaning="cost of a step off the path", minimum=0.0)
     share_cost: float = parameter(1.0, unit="1", meaning="cost of an unsupported sole", minimum=0.0)
-    reference_cost: float = parameter(0.2, unit="1/m", meaning="cost of first steps off the last plan", minimum=0.0)
-    reference_steps: int = parameter(2, unit="1", meaning="steps drawn to the last plan", minimum=0, maximum=9)
+    keep_share: float = parameter(
+        0.05, unit="1", meaning="share by which a kept plan may be dearer than a fresh one", minimum=0.0, maximum=1.0
+    )
+    keep_move: float = parameter(
+        0.028, unit="m", meaning="way that a kept step may move to be allowed, or to hold", minimum=0.0, maximum=0.1
+    )
+    keep_expansions: int = parameter(
+        150, unit="1", meaning="nodes the search for the rest of a kept plan may expand", minimum=1
+    )
 
     wiggle_margin: float = parameter(0.02, unit="m", meaning="distance wanted from a region's edges", minimum=0.0)
     wiggle_move: float = parameter(0.03, unit="m", meaning="largest move for it, each way", minimum=0.0, maximum=0.2)
-    wiggle_turn: float = parameter(0.087, unit="rad", meaning="largest turn for it", minimum=0.0, maximum=0.5)
+    wiggle_turn: float = parameter(0.04, unit="rad", meaning="largest turn for it", minimum=0.0, maximum=0.5)
 
     swing_height: float = parameter(0.08, unit="m", meaning="rise above the higher foothold", minimum=0.0, maximum=0.4)
+    swing_way: float = parameter(1.1, unit="m", meaning="way in the air for which the time suffices", minimum=0.1)
     swing_clearance: float = parameter(0.05, unit="m", meaning="height above all ground on the way", minimum=0.0)
     swing_margin: float = parameter(0.02, unit="m", meaning="ground beside the way that counts as on it", minimum=0.0)
     swing_leg_clearance: float = parameter(0.03, unit="m", meaning="height above ground while it rises", minimum=0.0)

@@ -2,35 +2,31 @@
 
 The search starts from the imminent stance, snaps every sole to the ground, and ends when the body has made enough
 progress along the path, or, at its end, when both feet stand at the goal. Whatever ends it, the best steps so far are
-the plan, as long as they get the robot on (after Calvert et al., 2022, and Griffin et al., 2019).
+the plan, as long as they get the robot on (after Calvert et al., 2022, and Griffin et al., 2019). Steps of the plan
+before are kept where they are still about as good.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import dataclasses
+from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-import numpy as np
-from numpy.typing import NDArray
-
 from skills.footsteps.footstep import Footstep, FootstepPlan, PlanOutcome, Side, Stance
-from skills.footsteps.footstep_lattice import FootstepLattice
 from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
-from skills.footsteps.footstep_search import OUT_OF_BUDGET, REACHED, search_footsteps
-from skills.footsteps.open_list import EDGE
-from skills.footsteps.search_request import search_space
+from skills.footsteps.kept_steps import holds, kept_footholds, nearly_kept, steps_ahead
+from skills.footsteps.planned_steps import planned_steps
+from skills.footsteps.rejections import counted
+from skills.footsteps.search_log import SearchLog
 from skills.footsteps.search_target import SearchTarget, search_window
-from skills.footsteps.step_cost import REASONS
-from skills.footsteps.swing_clearance import swing_clearance
 from skills.footsteps.terrain import Foothold, RegionTerrain, Terrain, region_terrain
+from skills.footsteps.way import Way, WayRules, after
+from skills.footsteps.way_search import Found, SearchBudget, search_way
 from skills.footsteps.wiggled_steps import wiggle_steps
-from skills.geometry.pose import Array
 from skills.regions.planar_region import PlanarRegions
 
 if TYPE_CHECKING:
     from skills.body_path.sub_goal import SubGoal
-
-_OPEN_LIST = 16384
 
 
 def terrain_ahead(
@@ -56,14 +52,16 @@ def plan_from_stance(
     first_sequence_id: int = 0,
     reference: FootstepPlan | None = None,
     max_expansions: int | None = None,
+    out_of_time: Callable[[], bool] | None = None,
+    logs: list[SearchLog] | None = None,
 ) -> FootstepPlan:
     """Plan from a stance that may start with either foot, and keep the better plan; see `plan_footsteps`."""
-    target = SearchTarget.on_path(goal, stance, parameters)
-    ids = {"plan_id": plan_id, "first_sequence_id": first_sequence_id}
-    left, right = (
-        search_plan(terrain, stance, side, target, parameters, reference, max_expansions, **ids) for side in Side
-    )
-    return min(left, right, key=lambda found: found.rank).plan
+    planners = [
+        WayPlanner(terrain, stance, side, SearchTarget.on_path(goal, stance, parameters), parameters) for side in Side
+    ]
+    ways = [planner.way(reference, max_expansions, out_of_time, logs) for planner in planners]
+    best = min(range(len(ways)), key=lambda i: ways[i].rank)
+    return planners[best].plan(ways[best], plan_id, first_sequence_id)
 
 
 def plan_footsteps(
@@ -77,6 +75,8 @@ def plan_footsteps(
     first_sequence_id: int = 0,
     reference: FootstepPlan | None = None,
     max_expansions: int | None = None,
+    out_of_time: Callable[[], bool] | None = None,
+    logs: list[SearchLog] | None = None,
 ) -> FootstepPlan:
     """Plan the next steps from a stance towards a sub-goal.
 
@@ -88,130 +88,111 @@ def plan_footsteps(
         parameters: limits, costs and search settings.
         plan_id: id of the plan.
         first_sequence_id: sequence id of its first step; the others count on.
-        reference: the plan before; the first steps are drawn weakly to its steps.
+        reference: the plan before; its steps are kept where they may still be made and are about as good.
         max_expansions: nodes that the search may expand; None for the parameters' number.
+        out_of_time: whether the search must end now, whatever it has found; None where time does not count.
+        logs: takes the log of the search for a fresh plan; None for no log.
 
     Returns:
         The plan. Its outcome is GOAL_REACHED with both feet at the end of the path, ENOUGH_STEPS at the sub-goal,
         PARTIAL where the search ended before but its best steps make progress, BLOCKED without steps where not.
     """
     target = SearchTarget.on_path(goal, imminent_stance, parameters)
-    ids = {"plan_id": plan_id, "first_sequence_id": first_sequence_id}
-    return search_plan(terrain, imminent_stance, first_side, target, parameters, reference, max_expansions, **ids).plan
+    planner = WayPlanner(terrain, imminent_stance, first_side, target, parameters)
+    way = planner.way(reference, max_expansions, out_of_time, logs)
+    return planner.plan(way, plan_id, first_sequence_id)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class FoundPlan:
-    """A plan, and how far on it gets [m]."""
+class WayPlanner:
+    """Plans from one stance with one foot first."""
 
-    plan: FootstepPlan
-    progress: float
+    def __init__(
+        self, terrain: Terrain, stance: Stance, first_side: Side, target: SearchTarget, parameters: FootstepParameters
+    ) -> None:
+        self._terrain, self._stance, self._first_side = terrain, stance, first_side
+        self._target, self._parameters = target, parameters
+        self._rules = WayRules(terrain, stance, first_side, target, parameters)
 
-    @property
-    def rank(self) -> tuple[int, float, float]:
-        """Order of plans, the best lowest: by outcome, then a partial plan's progress, then cost."""
-        order = (PlanOutcome.GOAL_REACHED, PlanOutcome.ENOUGH_STEPS, PlanOutcome.PARTIAL, PlanOutcome.BLOCKED)
-        progress = self.progress if self.plan.outcome is PlanOutcome.PARTIAL else 0.0
-        return order.index(self.plan.outcome), -progress, self.plan.cost
+    def way(
+        self,
+        reference: FootstepPlan | None = None,
+        max_expansions: int | None = None,
+        out_of_time: Callable[[], bool] | None = None,
+        logs: list[SearchLog] | None = None,
+    ) -> Way:
+        """The way to take: one that keeps steps of the plan before where one holds, or else a fresh one."""
+        p = self._parameters
+        budget = p.max_expansions if max_expansions is None else max_expansions
+        found = self._search((), SearchBudget(budget, out_of_time, p.minimum_steps), logged=logs is not None)
+        if logs is not None and found.log is not None:
+            logs.append(found.log)
+        fresh = self._way((), found)
+        steps = () if reference is None else steps_ahead(reference, self._stance, self._first_side)
+        expansions = fresh.expansions
+        for kept in self._beginnings(steps, fresh):
+            rest = SearchBudget(min(p.keep_expansions, budget), out_of_time, max(p.minimum_steps - len(kept), 0))
+            way = self._way(kept, self._search(kept, rest))
+            expansions += way.expansions
+            if holds(way, fresh, p):
+                return dataclasses.replace(way, rejections=fresh.rejections, expansions=expansions)
+        return dataclasses.replace(fresh, expansions=expansions)
 
+    def _beginnings(self, steps: tuple[Footstep, ...], fresh: Way) -> Iterator[tuple[Foothold, ...]]:
+        """What may be kept of the plan before: as many of its steps as can be, then fewer, then almost the first."""
+        p = self._parameters
+        kept = tuple(kept_footholds(self._terrain, steps, self._rules, p))
+        for count in range(len(kept), 0, -1):
+            yield kept[:count]
+        if kept and fresh.footholds:
+            for foothold in nearly_kept(self._terrain, kept[0], fresh.footholds[0], self._rules, p):
+                yield (foothold,)
 
-def search_plan(
-    terrain: Terrain,
-    stance: Stance,
-    first_side: Side,
-    target: SearchTarget,
-    parameters: FootstepParameters,
-    reference: FootstepPlan | None,
-    max_expansions: int | None,
-    *,
-    plan_id: int,
-    first_sequence_id: int,
-) -> FoundPlan:
-    """Search for the steps from a stance to a target; see `plan_footsteps`."""
-    budget = parameters.max_expansions if max_expansions is None else max_expansions
-    lattice = FootstepLattice.around(terrain, stance, first_side, target, parameters)
-    space = search_space(terrain, lattice, stance, first_side, target, reference, parameters)
-    open_list = np.empty(_OPEN_LIST, dtype=EDGE)
-    ended, last, before_last, cost, expansions, saved = search_footsteps(space, open_list, budget)
-    counted = _counted(space.rejections)
-    reason = "" if ended == REACHED else _why(ended, budget, counted)
-    progress = saved / parameters.step_cost * parameters.reach
-    outcome = _outcome(ended, progress, target, parameters)
-    if outcome is PlanOutcome.BLOCKED:
-        reason = f"no way on: {reason}"
-        return FoundPlan(
-            FootstepPlan(plan_id, terrain.frame_id, outcome, reason, (), 0.0, expansions, counted), progress
+    def plan(self, way: Way, plan_id: int, first_sequence_id: int) -> FootstepPlan:
+        """A way as steps that can be sent."""
+        blocked = way.outcome is PlanOutcome.BLOCKED
+        footholds = () if blocked else way.footholds
+        return FootstepPlan(
+            plan_id=plan_id,
+            frame_id=self._terrain.frame_id,
+            outcome=way.outcome,
+            reason=f"no way on: {way.reason}" if blocked else way.reason,
+            steps=planned_steps(
+                self._terrain, self._stance, self._first_side, footholds, self._parameters, first_sequence_id
+            ),
+            cost=0.0 if blocked else way.cost,
+            expansions=way.expansions,
+            rejections=counted(way.rejections),
+            kept_steps=0 if blocked else way.kept,
         )
-    way = _way(space.nodes["parent"], last, before_last)
-    footholds = [lattice.foothold(node, space.grounds) for node in way]
-    goal_xy = target.path_world[-1, :2] if outcome is PlanOutcome.GOAL_REACHED else None
-    footholds = wiggle_steps(terrain, stance, first_side, footholds, parameters, goal_xy)
-    steps = _steps(footholds, terrain, stance, first_side, parameters, first_sequence_id)
-    plan = FootstepPlan(plan_id, terrain.frame_id, outcome, reason, steps, float(cost), expansions, counted)
-    return FoundPlan(plan, progress)
 
+    def _search(
+        self, kept: list[Foothold] | tuple[Foothold, ...], budget: SearchBudget, *, logged: bool = False
+    ) -> Found:
+        stance, side = after(self._stance, self._first_side, kept)
+        return search_way(self._terrain, stance, side, self._target, self._parameters, budget, logged=logged)
 
-def _outcome(ended: int, progress: float, target: SearchTarget, parameters: FootstepParameters) -> PlanOutcome:
-    if ended == REACHED:
-        return PlanOutcome.GOAL_REACHED if target.final else PlanOutcome.ENOUGH_STEPS
-    return PlanOutcome.PARTIAL if progress >= parameters.minimum_progress else PlanOutcome.BLOCKED
-
-
-def _way(parents: NDArray[np.int64], last: int, before_last: int) -> list[int]:
-    """Nodes from the first step to the last; the stance foot's node, whose parent is past the end, is left out."""
-    way = [last, before_last]
-    while way[-1] < len(parents) - 1:
-        way.append(int(parents[way[-1]]))
-    return way[-3::-1]
-
-
-def _steps(
-    footholds: list[Foothold],
-    terrain: Terrain,
-    stance: Stance,
-    first_side: Side,
-    parameters: FootstepParameters,
-    first_sequence_id: int,
-) -> tuple[Footstep, ...]:
-    """Footholds as steps, each with its swing."""
-    steps: list[Footstep] = []
-    side = first_side
-    for i, foothold in enumerate(footholds):
-        landing, whole = foothold.T_world_sole, foothold.share >= 1.0
-        assert landing is not None, "a usable foothold has a pose"
-        swing = swing_clearance(terrain, stance.sole(side), landing, parameters)
-        steps.append(
-            Footstep(
-                sequence_id=first_sequence_id + i,
-                side=side,
-                T_world_sole=landing,
-                foothold_sole=whole_sole(parameters) if whole else terrain.foothold_polygon(landing, parameters),
-                swing_duration=parameters.swing_duration,
-                transfer_duration=parameters.transfer_duration,
-                swing_height=swing.height,
-                swing_waypoints_world=swing.waypoints_world,
-            )
+    def _way(self, kept: tuple[Foothold, ...], found: Found) -> Way:
+        p, final = self._parameters, self._target.final
+        progress = (found.saved + self._saved(kept)) / p.step_cost * p.reach
+        if found.reached:
+            outcome = PlanOutcome.GOAL_REACHED if final else PlanOutcome.ENOUGH_STEPS
+        else:
+            outcome = PlanOutcome.PARTIAL if progress >= p.minimum_progress else PlanOutcome.BLOCKED
+        goal_xy = self._target.path_world[-1, :2] if found.reached and final else None
+        footholds = wiggle_steps(
+            self._terrain, self._rules, self._first_side, [*kept, *found.footholds], len(kept), p, goal_xy
         )
-        stance = stance.with_sole(side, landing)
-        side = side.opposite
-    return tuple(steps)
+        return Way(
+            footholds=tuple(footholds),
+            kept=len(kept),
+            outcome=outcome,
+            reason=found.reason,
+            cost=self._rules.cost(footholds),
+            progress=progress,
+            expansions=found.expansions,
+            rejections=found.rejections,
+        )
 
-
-def whole_sole(parameters: FootstepParameters) -> Array:
-    """The sole's outline in its frame, (4, 2) counter-clockwise [m]."""
-    x, y = 0.5 * parameters.sole_length, 0.5 * parameters.sole_width
-    return np.array(((-x, -y), (x, -y), (x, y), (-x, y)))
-
-
-def _counted(rejections: NDArray[np.int64]) -> tuple[tuple[str, int], ...]:
-    """Reasons and their counts, the most frequent first."""
-    counts = [(reason, int(n)) for reason, n in zip(REASONS, rejections, strict=True) if n > 0]
-    return tuple(sorted(counts, key=lambda item: -item[1]))
-
-
-def _why(ended: int, budget: int, rejections: tuple[tuple[str, int], ...]) -> str:
-    """One sentence on why a search ended without its goal."""
-    most = f", most rejected: {rejections[0][0]} ({rejections[0][1]} times)" if rejections else ""
-    if ended == OUT_OF_BUDGET:
-        return f"the sub-goal was not found within {budget} expansions{most}"
-    return f"no footholds lead to the sub-goal{most}"
+    def _saved(self, kept: tuple[Foothold, ...]) -> float:
+        """What kept steps save of the estimated cost to go."""
+        return self._rules.to_go(kept[:0]) - self._rules.to_go(kept) if kept else 0.0

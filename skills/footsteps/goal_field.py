@@ -68,7 +68,8 @@ def spread_field(
         for j in range(max(iy - span, 0), min(iy + span, ny - 1) + 1):
             for i in range(max(ix - span, 0), min(ix + span, nx - 1) + 1):
                 hop = abs(j - iy) > 2 or abs(i - ix) > 2
-                if not hop and (abs(j - iy) + abs(i - ix)) % 2 == 0 and abs(j - iy) != 1:
+                # Of long moves every other will do: short ones lead on from where they end.
+                if (abs(j - iy) + abs(i - ix)) % 2 == 0 and (hop or abs(j - iy) != 1):
                     continue
                 distance = cell * np.sqrt(float((j - iy) ** 2 + (i - ix) ** 2))
                 for k in range(floors):

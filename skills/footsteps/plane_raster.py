@@ -31,6 +31,7 @@ class Raster(NamedTuple):
         resolution: cell size [m].
         walls: lowest and highest point of walls, (rows, columns, 2), in larger cells; empty where there are no walls.
         wall_resolution: their size [m].
+        top: no ground is higher [m].
     """
 
     cells: Cells
@@ -38,6 +39,7 @@ class Raster(NamedTuple):
     resolution: float
     walls: NDArray[np.float32]
     wall_resolution: float
+    top: float
 
 
 @kernel
@@ -53,15 +55,15 @@ def draw_regions(
     drawn: Cells,
     cells: Cells,
     planes: Array,
-) -> int:
+) -> tuple[int, float]:
     """Fill `planes` (R, 3) and a layer of `cells` (ny, nx) from the outlines of regions; even-odd, so holes stay open.
 
     Of regions on one floor the later wins a cell, of two with the same time the higher one. Regions with a NaN plane,
     and those on floors of layers already `drawn` (floors, ny, nx), are left out. Returns how many cells have one more
-    floor.
+    floor, and the height of the highest vertex.
     """
     ny, nx = cells.shape
-    more_floors = 0
+    more_floors, top = 0, -np.inf
     region_count = rotations.shape[0]
     for r in range(region_count):
         nz = rotations[r, 2, 2]
@@ -88,6 +90,8 @@ def draw_regions(
                     - corner[k]
                 ) / resolution - 0.5
             lowest, highest = min(lowest, xy[v, 1]), max(highest, xy[v, 1])
+            z = rotations[r, 2, 0] * vertices[v, 0] + rotations[r, 2, 1] * vertices[v, 1] + origins[r, 2]
+            top = max(top, z) if z == z else top
         if np.isfinite(planes[r, 2]) and np.isfinite(lowest) and np.isfinite(highest):
             for iy in range(max(0, int(np.ceil(lowest))), min(ny - 1, int(np.floor(highest))) + 1):
                 count = 0
@@ -120,7 +124,7 @@ def draw_regions(
                         elif rise > 0.0 or times[r] != times[there]:
                             cells[iy, ix] = r
         ring = last
-    return more_floors
+    return more_floors, top
 
 
 @kernel

@@ -22,10 +22,11 @@ STEP_LIMITS = np.dtype(
         for name in (
             *("half_length", "half_width", "reach", "reach_up", "reach_up_height", "reach_down", "reach_down_height"),
             *("back_reach", "minimum_width", "ideal_width", "maximum_width", "sole_gap", "height_change"),
-            *("inward_yaw", "outward_yaw", "uphill_drop", "uphill_tangent", "swing_reach", "swing_height_change"),
+            *("inward_yaw", "outward_yaw", "uphill_drop", "uphill_tangent", "in_place", "swing_reach"),
+            *("swing_height_change",),
             *("body_width", "body_depth", "body_base", "body_top", "step_over"),
             *("step_cost", "height_cost", "tilt_cost", "yaw_cost", "width_cost", "path_cost", "share_cost"),
-            *("reference_cost", "lattice", "heading", "stride", "turn", "heuristic_weight", "minimum_steps"),
+            *("lattice", "heading", "stride", "turn", "heuristic_weight", "minimum_steps"),
             *("along_tolerance", "across_tolerance", "heading_tolerance", "goal_tolerance", "goal_yaw_tolerance"),
             *("goal_height_tolerance", "final_turn", "field_cell", "tilt_tangent"),
         )
@@ -36,6 +37,18 @@ SEARCH_GOAL = np.dtype([("arc_length", np.float64), ("z", np.float64), ("final",
 LATTICE = np.dtype(
     [(name, np.int64) for name in ("floors", "headings", "ny", "nx", "floor", "heading", "iy", "ix", "stances")]
 )
+# What became of a step that a search looked at: after how many expansions, from which node to which, its outcome or why
+# it was rejected, its height, the cost with it and the estimated cost to go. Steps to a node to which a cheaper way is
+# known are left out.
+EDGE_LOG = np.dtype(
+    [
+        *((name, np.int32) for name in ("expansion", "parent", "node")),
+        *((name, np.float32) for name in ("z", "cost", "to_go")),
+        ("reason", np.uint8),
+    ]
+)
+# Instead of a reason: the node was expanded, or opened.
+EXPANDED, OPENED = range(2)
 # A foot on the lattice: cost of the way there, estimated cost to go, what being off the path costs, and the way back.
 NODE = np.dtype(
     [
@@ -45,13 +58,17 @@ NODE = np.dtype(
     ]
 )
 UNKNOWN, JUDGED, OPEN, CLOSED = range(4)
+# Where a search stands.
+SEARCH_STATE = np.dtype(
+    [*((name, np.int64) for name in ("begun", "expansions", "size", "best")), ("start_to_go", np.float64)]
+)
 # What the ground is under a foot of either side: outcome of the snap, height, slopes, supported share.
 GROUND = np.dtype([*((name, np.float64) for name in ("z", "a", "b", "share")), ("outcome", np.uint8)])
 # What a step from a stance foot depends on.
 STAND = np.dtype(
     [
         *((name, np.float64) for name in ("x", "y", "z", "cos", "sin", "uphill", "cost")),
-        *((name, np.float64) for name in ("swing_x", "swing_y", "swing_z")),
+        *((name, np.float64) for name in ("swing_x", "swing_y", "swing_z", "swing_yaw")),
         ("depth", np.int64),
     ]
 )
@@ -71,17 +88,21 @@ class SearchSpace(NamedTuple):
         goal: one `SEARCH_GOAL`.
         path: (N, 4) rows of x, y, heading, arc length.
         field: how far the goal is, see `goal_field`; empty where a path leads there.
-        reference: (K, 2) places of the first steps in the plan before, NaN where there is none.
         feet: (2, 7) stance foot, then swing foot: x, y, z, heading, slopes a and b, side (+1 left).
         lattice: one `LATTICE`.
-        headings: (H + 1, 3) rows of angle, its cosine and sine: those of the lattice, then the swing foot's.
+        headings: (H + 2, 3) rows of angle, its cosine and sine: the lattice's, then the swing foot's and the stance's.
         nodes: one `NODE` a node, zero.
         grounds: one `GROUND` a node of one side, zero.
-        steps: (2 H, M, 3) steps on level ground by side and heading of the stance foot, see `fill_level_steps`.
-        step_counts: how many of them are known, (2 H,), zero.
+        steps: (2 H + 1, M, 3) steps on level ground by side and heading of a foot, then those of the stance foot where
+            it is now; see `fill_level_steps`.
+        step_counts: how many of them are known, (2 H + 1,), zero.
         stand: one `STAND`, that of the stance foot at hand.
         snapped: (4,) what the last snap found.
+        state: one `SEARCH_STATE`, zero.
         rejections: counts by reason, added to.
+        level_rejections: (2 H + 1, reasons) the same for steps that never were, ordered as `steps`, zero.
+        log: the `EDGE_LOG`s that are written; none where there is no room.
+        logged: (1,) how many, zero.
     """
 
     raster: Raster
@@ -91,7 +112,6 @@ class SearchSpace(NamedTuple):
     goal: Records
     path: Array
     field: Array
-    reference: Array
     feet: Array
     lattice: Records
     headings: Array
@@ -101,4 +121,8 @@ class SearchSpace(NamedTuple):
     step_counts: NDArray[np.int64]
     stand: Records
     snapped: Array
+    state: Records
     rejections: NDArray[np.int64]
+    level_rejections: NDArray[np.int64]
+    log: Records
+    logged: NDArray[np.int64]

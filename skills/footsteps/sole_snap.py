@@ -2,33 +2,44 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from skills.footsteps.footstep_parameters import FootstepParameters
 from skills.footsteps.plane_raster import Raster, floor_near
+from skills.footsteps.rejections import (
+    AT_CLIFF,
+    AT_DROP,
+    AT_SHIN,
+    AT_WALL,
+    FOOTHOLD,
+    GROUND_ABOVE,
+    NO_GROUND,
+    TOO_SMALL,
+    TOO_STEEP,
+)
 from skills.footsteps.walls import wall_top
-from skills.geometry.pose import Array
+from skills.geometry.pose import Array, readonly
 from skills.kernels import kernel
 
-UNSEEN, FOOTHOLD, NO_GROUND, TOO_STEEP, GROUND_ABOVE, TOO_SMALL, AT_CLIFF, AT_WALL = range(8)
-SNAP_REASONS = (
-    *("", "", "no ground", "too steep", "ground above the sole"),
-    *("foothold too small", "at a cliff", "at a wall"),
-)
 SAMPLE_SPACING = 0.01
 
 
+# Farther around the sole, where only high or low ground counts, it is felt for at fewer points [m].
+_FAR_SPACING = 0.02
+
 # What a sole may stand on, for the kernels: fields are named after the parameters; `under` counts the samples that lie
-# under the sole, `close` those and the ones right beside it.
+# under the sole, `close` those and the ones right beside it, `cliff` and `shin` those and what lies farther out.
 SNAP_LIMITS = np.dtype(
     [
         (name, np.float64)
         for name in (
-            *("tilt_tangent", "share", "support_below", "ground_above", "cliff_height"),
-            *("body_base", "under", "close"),
+            *("tilt_tangent", "share", "support_below", "ground_above", "cliff_height", "shin_height", "drop_depth"),
+            *("body_base", "under", "close", "cliff", "shin"),
         )
     ]
 )
@@ -48,8 +59,7 @@ def snap_sole(
     """Put a level sole at x, y (from the corner), yaw on the plane of the cell under its centre.
 
     Writes height, slopes a and b, and supported share into `out` (4,), as far as they are known when a reason against
-    the foothold is found; returns FOOTHOLD or that reason. `samples` (N, 2) are points of the sole, then of its
-    surroundings, see `sole_samples`.
+    the foothold is found; returns FOOTHOLD or that reason. `samples` (N, 2) are those of `SoleSamples`.
     """
     limits = snap_limits[0]
     cells, planes = raster.cells, raster.planes
@@ -66,7 +76,7 @@ def snap_sole(
     if a * a + b * b > limits.tilt_tangent * limits.tilt_tangent:
         return TOO_STEEP
     cos, sin = np.cos(yaw), np.sin(yaw)
-    under, close = int(limits.under), int(limits.close)
+    under, close, cliff, shin = int(limits.under), int(limits.close), int(limits.cliff), int(limits.shin)
     unsupported = 0
     for n in range(samples.shape[0]):
         u, v = samples[n, 0], samples[n, 1]
@@ -77,14 +87,20 @@ def snap_sole(
             there = cells[0, iy, ix]
             if floors > 1:
                 there = floor_near(cells, planes, iy, ix, px, py, out[0])
-        if walled and wall_top(raster, px, py, out[0], limits.body_base) > out[0] + limits.cliff_height:
+        if walled and n < cliff and wall_top(raster, px, py, out[0], limits.body_base) > out[0] + limits.cliff_height:
             return AT_WALL
         if there == ground:
             continue
         rise = -np.inf
         if there >= 0:
             rise = (planes[there, 0] - a) * px + (planes[there, 1] - b) * py + planes[there, 2] - c
-        if n >= close:
+        if n >= shin:
+            if rise < -limits.drop_depth:
+                return AT_DROP
+        elif n >= cliff:
+            if rise > limits.shin_height:
+                return AT_SHIN
+        elif n >= close:
             if rise > limits.cliff_height:
                 return AT_CLIFF
         elif rise > limits.ground_above:
@@ -141,27 +157,52 @@ def sweep_soles(
         clearances[n] = smallest
 
 
-def sole_samples(length: float, width: float, edge: float, toe: float, beside: float) -> tuple[Array, int, int]:
-    """Points at which a sole feels the ground: under it to its very edge, right beside it, and farther around it.
+@dataclass(frozen=True, slots=True, eq=False)
+class SoleSamples:
+    """Points at which a sole feels the ground, and how many are of which kind.
 
-    Args:
-        length: length of the sole [m].
-        width: its width [m].
-        edge: how far from the sole is right beside it [m].
-        toe: how far before the toe it feels for cliffs [m].
-        beside: how far behind the heel and beside the sides [m].
-
-    Returns:
-        Points in the sole frame, (N, 2), each kind from the outside in; how many are under it, and how many under it
-        or right beside it.
+    Attributes:
+        points_sole: (N, 2) in the sole frame: under it, right beside it, then where cliffs, shin and drops count [m].
+        under, close, cliff, shin: the number of points up to and with each kind; the rest are for drops.
     """
-    x = _stations(*(-0.5 * length - d for d in (beside, edge, 0.0)), *(0.5 * length + d for d in (0.0, edge, toe)))
-    y = _stations(*(-0.5 * width - d for d in (beside, edge, 0.0)), *(0.5 * width + d for d in (0.0, edge, beside)))
+
+    points_sole: Array
+    under: int
+    close: int
+    cliff: int
+    shin: int
+
+    @classmethod
+    def of(cls, parameters: FootstepParameters) -> SoleSamples:
+        """Under the sole to its very edge, then as far around it as the parameters say."""
+        p = parameters
+        half = (0.5 * p.sole_length, 0.5 * p.sole_width)
+        toe, side = max(p.cliff_toe, p.sole_edge), max(p.cliff_side, p.sole_edge)
+        x = _stations(
+            *(-half[0] - d for d in (side, p.sole_edge, 0.0)), *(half[0] + d for d in (0.0, p.sole_edge, toe))
+        )
+        y = _stations(
+            *(-half[1] - d for d in (side, p.sole_edge, 0.0)), *(half[1] + d for d in (0.0, p.sole_edge, side))
+        )
+        points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
+        outside = np.max(np.abs(points) - half, axis=1)
+        kind = np.searchsorted((1e-9, p.sole_edge + 1e-9), outside)
+        near = points[np.lexsort((-outside, kind))]
+        around_shin = _band(half, (side, toe), (p.shin_side, p.shin_toe))
+        around_drop = _band(half, (0.0, 0.0), (p.drop_distance, p.drop_distance))
+        counts = np.cumsum((np.sum(kind == 0), np.sum(kind == 1), np.sum(kind == 2), len(around_shin)))
+        return cls(readonly(np.concatenate((near, around_shin, around_drop))), *(int(n) for n in counts))
+
+
+def _band(half: tuple[float, float], inner: tuple[float, float], outer: tuple[float, float]) -> Array:
+    """Points around a sole between two distances beside it and from its toe, (N, 2); the heel is a side."""
+    if outer[0] <= inner[0] and outer[1] <= inner[1]:
+        return np.zeros((0, 2))
+    spans = [(-half[0] - outer[0], half[0] + outer[1]), (-half[1] - outer[0], half[1] + outer[0])]
+    x, y = (np.linspace(low, high, 2 + int((high - low) / _FAR_SPACING)) for low, high in spans)
     points = np.stack(np.meshgrid(x, y, indexing="ij"), axis=-1).reshape(-1, 2)
-    outside = np.max(np.abs(points) - (0.5 * length, 0.5 * width), axis=1)
-    kind = np.searchsorted((1e-9, edge + 1e-9), outside)
-    order = np.lexsort((-outside, kind))
-    return points[order], int(np.sum(kind == 0)), int(np.sum(kind <= 1))
+    toe = points[:, 0] > half[0] + inner[1]
+    return points[toe | (points[:, 0] < -half[0] - inner[0]) | (np.abs(points[:, 1]) > half[1] + inner[0])]
 
 
 def _stations(*ends: float) -> Array:

@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 
 from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
 from skills.footsteps.plane_raster import Raster, close_seams, draw_regions, plane_heights
-from skills.footsteps.sole_snap import NO_GROUND, SNAP_LIMITS, SNAP_REASONS, snap_sole, sole_samples, sweep_soles
+from skills.footsteps.rejections import NO_GROUND, REASONS
+from skills.footsteps.sole_snap import SNAP_LIMITS, SoleSamples, snap_sole, sweep_soles
+from skills.footsteps.supported_polygon import supported_polygon
 from skills.footsteps.walls import draw_walls
-from skills.geometry.polygon import convex_hull
 from skills.geometry.pose import Array, Pose, readonly
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 
@@ -33,11 +34,13 @@ class Foothold:
         T_world_sole: sole frame on the ground, z along the surface normal; None where there is no ground.
         share: supported share of the sole.
         reason: why it must not stand here; empty where it may.
+        margin: distance of the sole from the edges of its region, as far as it was measured [m].
     """
 
     T_world_sole: Pose | None
     share: float
     reason: str
+    margin: float = 0.0
 
     @property
     def usable(self) -> bool:
@@ -136,7 +139,7 @@ class RegionTerrain:
         x, y, yaw = float(x), float(y), float(yaw)
         limits, samples = foothold_rules(parameters)
         x_corner, y_corner = (float(n) for n in np.array((x, y)) - self.corner_world)
-        best, least = Foothold(None, 0.0, SNAP_REASONS[NO_GROUND]), np.inf
+        best, least = Foothold(None, 0.0, REASONS[NO_GROUND]), np.inf
         for floor in range(self.raster.cells.shape[0]):
             found = np.full(4, np.nan)
             outcome = snap_sole(self.raster, floor, limits, samples, x_corner, y_corner, yaw, found)
@@ -144,18 +147,20 @@ class RegionTerrain:
             off = -height if np.isinf(z) else abs(height - z)
             if off < least:
                 T_world_sole = sole_on_slope(x, y, height, yaw, a, b)
-                best, least = Foothold(T_world_sole, float(share), SNAP_REASONS[outcome]), off
+                best, least = Foothold(T_world_sole, float(share), REASONS[outcome]), off
         return best
 
     def foothold_polygon(self, T_world_sole: Pose, parameters: FootstepParameters) -> Array:
         """Supported part of a sole, (N, 2) convex polygon in the sole frame, counter-clockwise [m]."""
         limits, samples = foothold_rules(parameters)
         under = samples[: int(limits["under"][0])]
-        points_sole = np.column_stack((under, np.zeros(len(under))))
-        points_world = T_world_sole @ points_sole
-        rise = self.heights(points_world) - points_world[:, 2]
-        supported = (rise >= -parameters.support_below) & (rise <= parameters.ground_above)
-        return convex_hull(_row_ends(points_sole[supported, :2]))
+        points = T_world_sole @ np.column_stack((under, np.zeros(len(under))))
+        cells = self.raster.cells
+        iy, ix = np.floor((points[:, 1::-1] - self.corner_world[::-1]) / self.raster.resolution).astype(int).T
+        inside = (iy >= 0) & (ix >= 0) & (iy < cells.shape[1]) & (ix < cells.shape[2])
+        planes = np.unique(cells[:, iy[inside], ix[inside]])
+        regions = [self.ground[plane] for plane in planes if plane >= 0]
+        return supported_polygon(T_world_sole, regions, parameters)
 
     def heights(self, points_world: Array) -> Array:
         """Height of the ground under points (N, 2 or 3), (N,) [m]; NaN where none is known."""
@@ -194,21 +199,21 @@ def region_terrain(
     steepest = np.cos(parameters.steepest_region)
     ground = [region for region in regions.regions if region.T_world_region.R[2, 2] > steepest]
     steep = [region for region in regions.regions if abs(region.T_world_region.R[2, 2]) <= steepest]
-    cells, planes = _draw(ground, low, resolution, (ny, nx))
+    cells, planes, top = _draw(ground, low, resolution, (ny, nx))
     if ground:
         width, step = float(parameters.seam_width), float(parameters.seam_step)
         cells = np.stack([close_seams(floor, planes, resolution, width, step) for floor in cells])
     walls = _draw_walls(steep, low, float(parameters.wall_resolution), np.asarray(high_world) - low)
     for array in (cells, planes, walls):
         array.flags.writeable = False
-    raster = Raster(cells, planes, resolution, walls, parameters.wall_resolution)
+    raster = Raster(cells, planes, resolution, walls, float(parameters.wall_resolution), top)
     return RegionTerrain(regions.frame_id, low, raster, tuple(ground))
 
 
 def _draw(
     ground: list[PlanarRegion], corner: Array, resolution: float, shape: tuple[int, int]
-) -> tuple[NDArray[np.int32], Array]:
-    """Cells (floors, ny, nx) and planes; as many layers of cells as there are floors above each other."""
+) -> tuple[NDArray[np.int32], Array, float]:
+    """Cells (floors, ny, nx), planes and the height of the top; as many layers as there are floors above each other."""
     planes = np.zeros((len(ground), 3))
     rings = [(i, ring) for i, region in enumerate(ground) for ring in (region.hull_region, *region.holes_region)]
     vertices = np.concatenate([ring for _, ring in rings]) if rings else np.zeros((0, 2))
@@ -218,14 +223,14 @@ def _draw(
     origins = np.array([region.T_world_region.p for region in ground]).reshape(-1, 3)
     times = np.array([region.time for region in ground], dtype=np.float64)
     cells = np.empty((0, *shape), dtype=np.int32)
-    more_floors = 1
+    more_floors, top = 1, -np.inf
     while more_floors and len(cells) < _MOST_FLOORS:
         layer = np.full(shape, -1, dtype=np.int32)
-        more_floors = draw_regions(
+        more_floors, top = draw_regions(
             vertices, starts, owners, rotations, origins, times, corner, resolution, cells, layer, planes
         )
         cells = np.concatenate((cells, layer[None]))
-    return cells, planes
+    return cells, planes, top
 
 
 def _draw_walls(steep: list[PlanarRegion], corner: Array, resolution: float, size: Array) -> NDArray[np.float32]:
@@ -269,17 +274,12 @@ def slopes(T_world_sole: Pose) -> tuple[float, float]:
 @lru_cache(maxsize=8)
 def foothold_rules(parameters: FootstepParameters) -> tuple[NDArray[np.void], Array]:
     """The limits on a foothold as the kernels take them, one `SNAP_LIMITS`, and where the sole feels the ground."""
-    samples, under, close = sole_samples(
-        parameters.sole_length,
-        parameters.sole_width,
-        parameters.sole_edge,
-        max(parameters.cliff_toe, parameters.sole_edge),
-        max(parameters.cliff_side, parameters.sole_edge),
-    )
-    derived = {"tilt_tangent": float(np.tan(parameters.tilt)), "under": under, "close": close}
+    samples = SoleSamples.of(parameters)
+    derived = {"tilt_tangent": float(np.tan(parameters.tilt))}
+    derived |= {name: getattr(samples, name) for name in ("under", "close", "cliff", "shin")}
     limits = pack(SNAP_LIMITS, parameters, derived)
     limits.flags.writeable = False
-    return limits, readonly(samples)
+    return limits, samples.points_sole
 
 
 def pack(layout: np.dtype[np.void], parameters: FootstepParameters, derived: dict[str, float]) -> NDArray[np.void]:
@@ -287,10 +287,3 @@ def pack(layout: np.dtype[np.void], parameters: FootstepParameters, derived: dic
     names = layout.names or ()
     values = tuple(derived[name] if name in derived else getattr(parameters, name) for name in names)
     return np.array([values], dtype=layout)
-
-
-def _row_ends(points: Array) -> Array:
-    """Of points on a grid the first and the last of each row, which have the same convex hull."""
-    ordered = points[np.lexsort((points[:, 1], points[:, 0]))]
-    starts = np.flatnonzero(np.diff(ordered[:, 0], prepend=np.nan) != 0.0)
-    return np.concatenate((ordered[starts], ordered[np.append(starts[1:], len(ordered)) - 1]))

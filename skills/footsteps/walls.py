@@ -12,6 +12,8 @@ from skills.kernels import kernel
 
 # Samples of a wall per cell, so that no cell on it is missed.
 _DENSITY = 1.5
+# Where the body feels for high ground [m].
+_GROUND_SPACING = 0.04
 
 
 @kernel
@@ -86,7 +88,11 @@ def wall_top(raster: Raster, x: float, y: float, z: float, above: float) -> floa
 
 @kernel
 def body_clear(raster: Raster, limits: Records, x: float, y: float, z: float, cos: float, sin: float) -> bool:
-    """Whether a body over feet at height z, its middle at x, y, touches no wall."""
+    """Whether a body over feet at height z, its middle at x, y, touches no wall and no high ground."""
+    if raster.top > z + limits.body_base and not _clear_of_ground(raster, limits, x, y, z, cos, sin):
+        return False
+    if raster.walls.shape[0] == 0:
+        return True
     spacing = raster.wall_resolution / _DENSITY
     along, across = int(limits.body_depth / spacing) + 1, int(limits.body_width / spacing) + 1
     for i in range(along + 1):
@@ -95,6 +101,27 @@ def body_clear(raster: Raster, limits: Records, x: float, y: float, z: float, co
             v = limits.body_width * (j / across - 0.5)
             if not _free(raster, limits, x + cos * u - sin * v, y + sin * u + cos * v, z):
                 return False
+    return True
+
+
+@kernel
+def _clear_of_ground(raster: Raster, limits: Records, x: float, y: float, z: float, cos: float, sin: float) -> bool:
+    """Whether no ground lies between the lower and the upper end of a body."""
+    along, across = int(limits.body_depth / _GROUND_SPACING) + 1, int(limits.body_width / _GROUND_SPACING) + 1
+    scale, planes = 1.0 / raster.resolution, raster.planes
+    for i in range(along + 1):
+        u = limits.body_depth * (i / along - 0.5)
+        for j in range(across + 1):
+            v = limits.body_width * (j / across - 0.5)
+            px, py = x + cos * u - sin * v, y + sin * u + cos * v
+            if px < 0.0 or py < 0.0 or px * scale >= raster.cells.shape[2] or py * scale >= raster.cells.shape[1]:
+                continue
+            for floor in range(raster.cells.shape[0]):
+                there = raster.cells[floor, int(py * scale), int(px * scale)]
+                if there >= 0:
+                    height = planes[there, 0] * px + planes[there, 1] * py + planes[there, 2] - z
+                    if limits.body_base < height < limits.body_top:
+                        return False
     return True
 
 

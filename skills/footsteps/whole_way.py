@@ -8,16 +8,19 @@ the place nearest to it that can be reached.
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 
 import numpy as np
 
 from skills.footsteps.footstep import FootstepPlan, PlanOutcome, Side, Stance
 from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
-from skills.footsteps.footstep_planner import FoundPlan, search_plan
+from skills.footsteps.footstep_planner import WayPlanner
 from skills.footsteps.goal_field import open_edges, spread_field
+from skills.footsteps.search_log import SearchLog
 from skills.footsteps.search_request import step_limits
 from skills.footsteps.search_target import SearchTarget
 from skills.footsteps.terrain import RegionTerrain, region_terrain
+from skills.footsteps.way import Way
 from skills.geometry.pose import Array, Pose
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 
@@ -31,6 +34,9 @@ def plan_whole_way(
     goal_world: Array,
     parameters: FootstepParameters,
     terrain_parameters: TerrainParameters,
+    *,
+    out_of_time: Callable[[], bool] | None = None,
+    logs: list[SearchLog] | None = None,
 ) -> FootstepPlan:
     """Plan all steps from a stance to a goal.
 
@@ -40,6 +46,8 @@ def plan_whole_way(
         goal_world: (4,) middle of the feet x, y, z [m] and heading [rad] at the goal; z tells floors apart.
         parameters: limits, costs and search settings.
         terrain_parameters: how regions become ground.
+        out_of_time: as in `plan_footsteps`.
+        logs: as there.
 
     Returns:
         The plan; its outcome is GOAL_REACHED with both feet at the goal, PARTIAL or BLOCKED where that was not found.
@@ -48,18 +56,17 @@ def plan_whole_way(
     low, high = _window(regions, stance.mid_feet[:2], goal[:2])
     terrain = region_terrain(regions, low, high, terrain_parameters)
     target, reachable = _target(terrain, stance, goal, parameters)
-    best = None
+    best, planner, budget = None, None, parameters.whole_way_expansions
     for side in _sides(stance, goal):
-        found = search_plan(
-            terrain, stance, side, target, parameters, None, parameters.whole_way_expansions, plan_id=0,
-            first_sequence_id=0,
-        )  # fmt: skip
-        best = found if best is None or found.rank < best.rank else best
+        tried = WayPlanner(terrain, stance, side, target, parameters)
+        way = tried.way(max_expansions=budget, out_of_time=out_of_time, logs=logs)
+        if best is None or way.rank < best.rank:
+            best, planner = way, tried
         # A search that has spent its budget would spend the other foot's as well.
-        if best.plan.outcome is PlanOutcome.GOAL_REACHED or found.plan.expansions >= parameters.whole_way_expansions:
+        if best.reached or way.expansions >= budget:
             break
-    assert best is not None, "a robot has feet"
-    return best.plan if reachable else _short_of_goal(best)
+    assert best is not None and planner is not None, "a robot has feet"
+    return planner.plan(best if reachable else _short_of_goal(best), 0, 0)
 
 
 def stand_on(
@@ -161,9 +168,8 @@ def _sides(stance: Stance, goal: Array) -> tuple[Side, Side]:
     return (Side.LEFT, Side.RIGHT) if left >= right else (Side.RIGHT, Side.LEFT)
 
 
-def _short_of_goal(found: FoundPlan) -> FootstepPlan:
-    """A plan to the nearest place is no plan to the goal."""
-    plan = found.plan
-    reason = "the ground does not lead to the goal" + (f"; {plan.reason}" if plan.reason else "")
-    outcome = PlanOutcome.PARTIAL if plan.steps else PlanOutcome.BLOCKED
-    return dataclasses.replace(plan, outcome=outcome, reason=reason)
+def _short_of_goal(way: Way) -> Way:
+    """A way to the nearest place is no way to the goal."""
+    reason = "the ground does not lead to the goal" + (f"; {way.reason}" if way.reason else "")
+    outcome = PlanOutcome.PARTIAL if way.footholds else PlanOutcome.BLOCKED
+    return dataclasses.replace(way, outcome=outcome, reason=reason)

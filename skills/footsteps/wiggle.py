@@ -21,11 +21,21 @@ _TINY = 1e-10
 
 
 @kernel
+def sole_margin(outline: Array, sole: Array, target: float) -> float:
+    """The least distance of a sole's corners from the edges of its region, at most a target; see `wiggle_sole`."""
+    least = target
+    for e in range(outline.shape[0]):
+        for c in range(sole.shape[0]):
+            least = min(least, outline[e, 2] - outline[e, 0] * sole[c, 0] - outline[e, 1] * sole[c, 1])
+    return least
+
+
+@kernel
 def wiggle_sole(outline: Array, sole: Array, target: float, most_move: float, most_turn: float, move: Array) -> float:
     """Find the least move of a sole that keeps its corners `target` inside the outline of its region.
 
     Args:
-        outline: (N, 4) edges: unit outward normal x, y, offset, and 1 where the edge counts; in the sole's frame.
+        outline: (N, 3) edges that count: unit outward normal x, y and offset, in the sole's frame.
         sole: (4, 2) corners of the sole in its frame [m].
         target: margin wanted [m].
         most_move: largest move along each axis [m].
@@ -40,8 +50,6 @@ def wiggle_sole(outline: Array, sole: Array, target: float, most_move: float, mo
     offsets = np.empty(rows.shape[0])
     least = target
     for e in range(outline.shape[0]):
-        if outline[e, 3] < 0.5:
-            continue
         for c in range(sole.shape[0]):
             nx, ny = outline[e, 0], outline[e, 1]
             rows[count, 0], rows[count, 1] = nx, ny

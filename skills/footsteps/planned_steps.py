@@ -1,0 +1,60 @@
+"""From footholds to steps: the way of each foot through the air, how long it takes, and what of its sole carries."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skills.footsteps.footstep import Footstep, Side, Stance
+from skills.footsteps.footstep_parameters import FootstepParameters
+from skills.footsteps.swing_clearance import SwingClearance, swing_clearance
+from skills.footsteps.terrain import Foothold, Terrain
+from skills.footsteps.way import sole_of
+from skills.geometry.pose import Array, Pose
+
+
+def planned_steps(
+    terrain: Terrain,
+    stance: Stance,
+    first_side: Side,
+    footholds: tuple[Foothold, ...],
+    parameters: FootstepParameters,
+    first_sequence_id: int,
+) -> tuple[Footstep, ...]:
+    """Footholds from a stance as steps, each with its swing."""
+    steps: list[Footstep] = []
+    side = first_side
+    for i, foothold in enumerate(footholds):
+        start, landing = stance.sole(side), sole_of(foothold)
+        swing = swing_clearance(terrain, start, landing, parameters)
+        whole = foothold.share >= 1.0
+        steps.append(
+            Footstep(
+                sequence_id=first_sequence_id + i,
+                side=side,
+                T_world_sole=landing,
+                foothold_sole=whole_sole(parameters) if whole else terrain.foothold_polygon(landing, parameters),
+                swing_duration=swing_duration(start, landing, swing, parameters),
+                transfer_duration=parameters.transfer_duration,
+                swing_height=swing.height,
+                swing_waypoints_world=swing.waypoints_world,
+                margin=foothold.margin,
+            )
+        )
+        stance = stance.with_sole(side, landing)
+        side = side.opposite
+    return tuple(steps)
+
+
+def swing_duration(
+    T_world_start: Pose, T_world_end: Pose, swing: SwingClearance, parameters: FootstepParameters
+) -> float:
+    """How long a foot is in the air [s]: the parameters' time, and longer in proportion where its way is long."""
+    corners = np.vstack((T_world_start.p, swing.waypoints_world, T_world_end.p))
+    length = float(np.sum(np.linalg.norm(np.diff(corners, axis=0), axis=1)))
+    return parameters.swing_duration * max(1.0, length / parameters.swing_way)
+
+
+def whole_sole(parameters: FootstepParameters) -> Array:
+    """The sole's outline in its frame, (4, 2) counter-clockwise [m]."""
+    x, y = 0.5 * parameters.sole_length, 0.5 * parameters.sole_width
+    return np.array(((-x, -y), (x, -y), (x, y), (-x, y)))
