@@ -48,8 +48,8 @@ def warm_up_planner(configuration: Configuration) -> None:
     """Plan over a beam so narrow that feet must be moved to its middle and stand on it in part; then once more."""
     parameters = dataclasses.replace(configuration.footsteps, share=0.5)
     stance = stand_on(PlanarRegions((), 0.0, 0), np.zeros(4), parameters, configuration.terrain)
-    outline = 0.5 * np.array(((-4.0, -0.37), (4.0, -0.37), (4.0, 0.37), (-4.0, 0.37)))
-    beam = PlanarRegion(Pose.from_xyz_rpy((1.0, 0.01, 0.0)), outline, (outline,), 1.48, 0.0)
+    outline = 0.5 * np.array(((-4.0, -0.26), (4.0, -0.26), (4.0, 0.26), (-4.0, 0.26)))
+    beam = PlanarRegion(Pose.from_xyz_rpy((1.0, 0.01, 0.0)), outline, (outline,), 1.04, 0.0)
     goal = sub_goal(straight_path(np.zeros(3), np.array((3.0, 0.0, 0.0))), stance, configuration.sub_goal)
     terrain = terrain_ahead(PlanarRegions((beam,), 0.0, 0), stance, goal, parameters, configuration.terrain)
     plan = plan_footsteps(terrain, stance, Side.LEFT, goal, parameters)
