@@ -5,6 +5,7 @@ Every kernel is compiled by numba to machine code that releases the GIL, is bit-
 is named by a hash of all sources that hold kernels.
 """
 
+import ctypes
 import hashlib
 import os
 from collections.abc import Callable
@@ -12,14 +13,25 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 _THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
+_MMAP_THRESHOLD, _TRIM_THRESHOLD = -3, -1  # options of mallopt(3)
+_KEPT = 1 << 28  # [bytes]
 _KERNEL_FOLDERS = ("skills", "sim_envs", "lookstep")
 
 
 def prepare_runtime() -> None:
-    """Pin one thread a numerical library and choose the kernel cache; must run before numpy and numba load."""
+    """Pin one thread a numerical library, keep freed memory, choose the kernel cache; before numpy and numba load."""
+    _keep_freed_memory()
     for variable in _THREAD_VARIABLES:
         os.environ.setdefault(variable, "1")
     os.environ.setdefault("NUMBA_CACHE_DIR", str(_cache_root() / f"kernels-{_source_hash()}"))
+
+
+def _keep_freed_memory() -> None:
+    """Let the C library hold on to large blocks: pages fresh from the system cost more than what is written to them."""
+    mallopt = getattr(ctypes.CDLL(None), "mallopt", None)  # other C libraries than glibc may have none
+    if mallopt is not None:
+        for option in (_MMAP_THRESHOLD, _TRIM_THRESHOLD):
+            mallopt(option, _KEPT)
 
 
 def _cache_root() -> Path:

@@ -92,7 +92,7 @@ def examine_regions(image: DepthImage, parameters: RegionParameters = DEFAULT_PA
     """The same as `extract_regions`, with labels and with what was rejected and why."""
     seen = without_body(image)
     patches = fit_patches(seen, parameters)
-    coarse = grow_regions(patches, parameters)
+    coarse = grow_regions(patches, parameters, parameters.patches_min)
     fine = refine_regions(seen, patches, coarse, parameters)
     regions, region_labels, rejected = polygons_of(
         image, fine.labels, fine.planes, fine.sigma, fine.bend, parameters, fine.noise

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.pose import Array
-from skills.kernels import kernel, leaf_kernel
-from skills.regions.noise_level import depth_noise
+from skills.kernels import leaf_kernel
+from skills.regions.joining import join_regions
 from skills.regions.parameters import RegionParameters
-from skills.regions.patches import SUMS, Patches, fit_plane, misfit, off_plane
+from skills.regions.patches import SUMS, Patches, fit_plane, off_plane
 from skills.regions.splitting import split_regions
 
 Labels = NDArray[np.int32]
@@ -30,28 +30,30 @@ class PatchRegions:
     Attributes:
         labels: index into planes for each patch, (rows, columns) int32; -1 for none.
         planes: plane of each region, (R, 3) [1/m], as in `Patches`.
+        sums: sums over the pixels of each region, (R, 10).
     """
 
     labels: Labels
     planes: Array
+    sums: Array
 
 
-def grow_regions(patches: Patches, parameters: RegionParameters) -> PatchRegions:
-    """Join patches into regions."""
+def grow_regions(patches: Patches, parameters: RegionParameters, patches_min: int) -> PatchRegions:
+    """Join patches into regions of no fewer than so many."""
     p, pixels = parameters, patches.size**2
     labels = np.full(patches.sigma.shape, -1, dtype=np.int32)
     order = _flattest_first(patches.sigma)
-    capacity = labels.size // p.patches_min + 1
+    capacity = labels.size // patches_min + 1
     sums, planes = np.zeros((capacity, SUMS)), np.zeros((capacity, 3))
     limits = np.array((p.link_angle, p.link_offset, p.grow_angle, p.grow_offset))
     queue, seen, face = np.empty(labels.size, np.int64), np.zeros(labels.shape, np.int32), np.empty(4)
     work = (queue, seen, face)
-    count = _grow(patches.sums, patches.facets, order, limits, p.patches_min, *work, labels, sums, planes)
+    count = _grow(patches.sums, patches.facets, order, limits, patches_min, *work, labels, sums, planes)
     _fill(patches.sums, patches.facets, planes, p.fill_offset, queue, labels)
     merging = (p.merge_offset, p.noise_factor)
-    count = _merge(labels, count, *merging, patches.noise.law, pixels, sums, planes)
-    count = split_regions(patches.sums, patches.facets, labels, count, *merging, p.patches_min, sums, planes)
-    return PatchRegions(labels, planes[:count])
+    count, _ = join_regions(labels, count, *merging, patches.noise.law, pixels, sums, planes)
+    count = split_regions(patches.sums, patches.facets, labels, count, *merging, patches_min, sums, planes)
+    return PatchRegions(labels, planes[:count], sums[:count])
 
 
 def _flattest_first(sigma: Array) -> NDArray[np.int64]:
@@ -115,9 +117,9 @@ def _grow(
                     continue
                 there = facets[i, j]
                 allowed = link_offset + there[7]
-                # A patch without a plane is not a number, and every test of it fails.
                 if (
-                    abs(_off(there, face)) <= grow_offset + there[7]
+                    there[3] > 0.0
+                    and abs(_off(there, face)) <= grow_offset + there[7]
                     and abs(_off(there, here)) <= allowed
                     and abs(_off(here, there)) <= allowed
                     and _turned(there, here) <= (link_angle + there[8]) ** 2
@@ -192,78 +194,7 @@ def _fill(
             j = column + (side == 2) - (side == 3)
             if i < 0 or j < 0 or i >= rows or j >= columns or labels[i, j] >= 0:
                 continue
-            # What allows for noise is not a number where a patch has few pixels.
-            if abs(off_plane(patch_sums[i, j], planes[label])) <= offset + facets[i, j, 7]:
+            if facets[i, j, 6] > 0.0 and abs(off_plane(patch_sums[i, j], planes[label])) <= offset + facets[i, j, 7]:
                 labels[i, j] = label
                 queue[tail] = i * columns + j
                 tail += 1
-
-
-@kernel
-def _merge(
-    labels: Labels,
-    count: int,
-    offset: float,
-    factor: float,
-    noise: Array,
-    pixels: float,
-    sums: Array,
-    planes: Array,
-) -> int:
-    """Join regions at most two patches apart until none fits another; the number of regions afterwards."""
-    rows, columns = labels.shape
-    parents = np.empty(count, np.int32)
-    touching = np.zeros((count, count), np.uint8)
-    for p in range(count):
-        parents[p] = p
-    for row in range(rows):
-        for column in range(columns):
-            p = labels[row, column]
-            for step in range(1, 4):
-                q = labels[row + step, column] if row + step < rows else -1
-                r = labels[row, column + step] if column + step < columns else -1
-                if p >= 0 and q >= 0:
-                    touching[min(p, q), max(p, q)] = 1
-                if p >= 0 and r >= 0:
-                    touching[min(p, r), max(p, r)] = 1
-    union, plane = np.empty(10), np.empty(3)
-    merged = True
-    while merged:
-        merged = False
-        for p in range(count):
-            for q in range(p + 1, count):
-                if touching[p, q] == 0 or parents[p] != p or parents[q] != q:
-                    continue
-                for k in range(10):
-                    union[k] = sums[p, k] + sums[q, k]
-                fit_plane(union, plane)
-                # The plane of a small region is less certain, and more of its misfit is noise.
-                patches = min(sums[p, 0], sums[q, 0]) / pixels
-                limit = offset + factor * depth_noise(noise, union[0] / union[3], pixels) * np.sqrt(3.0 / patches)
-                if misfit(sums[p], planes[p], plane) > limit or misfit(sums[q], planes[q], plane) > limit:
-                    continue
-                for k in range(10):
-                    sums[p, k] = union[k]
-                for k in range(3):
-                    planes[p, k] = plane[k]
-                for k in range(count):
-                    if parents[k] == q:
-                        parents[k] = p
-                    if k != p and touching[min(k, q), max(k, q)]:
-                        touching[min(k, p), max(k, p)] = 1
-                merged = True
-    kept = 0
-    numbers = np.empty(count, np.int32)
-    for p in range(count):
-        if parents[p] == p:
-            numbers[p] = kept
-            for k in range(10):
-                sums[kept, k] = sums[p, k]
-            for k in range(3):
-                planes[kept, k] = planes[p, k]
-            kept += 1
-    for row in range(rows):
-        for column in range(columns):
-            if labels[row, column] >= 0:
-                labels[row, column] = numbers[parents[labels[row, column]]]
-    return kept

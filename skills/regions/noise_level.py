@@ -57,11 +57,11 @@ def estimate_noise(sums: Array, pixels: float) -> NoiseLevel:
     depth, white, second = np.empty((3, -(-sums.shape[0] // _STRIDE) * sums.shape[1]))
     count = _probe(sums, 0.5 * pixels, depth, white, second)
     depth, white, second = depth[:count], white[:count], second[:count]
-    s, g = _law([(n, z, q / _CHI_QUARTILE) for n, z, q in _quantiles(depth, white, 0.25)])
+    s, g = _law([(n, z, q / _CHI_QUARTILE, q) for n, z, q in _quantiles(depth, white, 0.25)])
     flat = white <= _FLAT * (s + g * depth**2)
     inner = np.flatnonzero((second >= 0.0) & flat & np.roll(flat, 1) & np.roll(flat, -1))
     rows = _quantiles(depth[inner], second[inner], 0.5)
-    mean = [(n, z, max((m / _NORMAL_MEDIAN) ** 2 - (s + g * z**2) ** 2 / pixels, 0.0) ** 0.5) for n, z, m in rows]
+    mean = [(n, z, max((m / _NORMAL_MEDIAN) ** 2 - (s + g * z**2) ** 2 / pixels, 0.0) ** 0.5, m) for n, z, m in rows]
     return NoiseLevel(s, g, *_law(mean))
 
 
@@ -79,13 +79,16 @@ def _quantiles(depth: Array, values: Array, share: float) -> list[tuple[int, flo
     return rows
 
 
-def _law(rows: list[tuple[int, float, float]]) -> tuple[float, float]:
-    """The s and g, neither below zero, of sigma = s + g z^2 that fits rows of a number, a depth and a sigma best."""
+def _law(rows: list[tuple[int, float, float, float]]) -> tuple[float, float]:
+    """The s and g, neither below zero, of sigma = s + g z^2 that fits samples best.
+
+    A row has the number of samples, their depth, their sigma, and the measurement that sigma was taken from.
+    """
     if not rows:
         return 0.0, 0.0
-    count, depth, sigma = np.array(rows).T
+    count, depth, sigma, measured = np.array(rows).T
     # What matters is the relative error; it also keeps ranges of depth full of edges, seen far away, from deciding.
-    weights = count / np.maximum(sigma, 1e-5) ** 2
+    weights = count / np.maximum(measured, 1e-5) ** 2
     square, total = depth**2, weights.sum()
     sigma_mean, square_mean = weights @ sigma / total, weights @ square / total
     spread = weights @ (square - square_mean) ** 2

@@ -42,7 +42,7 @@ class RegionParameters:
         0.0, unit="m", minimum=0.0, maximum=0.1, meaning="offset at which a patch joins without regard to its normal *"
     )
     merge_offset: float = parameter(
-        0.001, unit="m", minimum=0.0, maximum=0.1, meaning="mean distance of regions from the plane they merge to *"
+        0.0005, unit="m", minimum=0.0, maximum=0.1, meaning="mean distance of regions from the plane they merge to *"
     )
     pixel_offset: float = parameter(
         0.002, unit="m", minimum=0.0, maximum=0.1, meaning="depth of pixels of a region from its plane *"

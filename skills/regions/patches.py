@@ -40,7 +40,7 @@ class Patches:
         sums: sums over the valid pixels of each patch, (rows, columns, 10).
         facets: plane and mean point of each patch in the camera frame, (rows, columns, 9): unit normal away from the
             camera, distance of the plane, mean point, how far noise may move the mean and turn the plane [1, m, m, m,
-            rad]; not a number where it has none.
+            rad]; zeros where it has none.
         sigma: spread of the pixels about that plane, (rows, columns) [m]; infinite where it has none.
         noise: how noisy the image is.
     """
@@ -72,16 +72,17 @@ def fit_patches(image: DepthImage, parameters: RegionParameters, noise: NoiseLev
     return fit_facets(patches, sums, parameters)
 
 
-def fit_facets(patches: Patches, sums: Array, parameters: RegionParameters) -> Patches:
-    """The same grid of patches with other sums, and planes fitted to these."""
+def fit_facets(patches: Patches, sums: Array, parameters: RegionParameters, facets: Array | None = None) -> Patches:
+    """The same grid of patches with other sums, and planes fitted to these; facets are room for them, all zeros."""
     rows, columns = sums.shape[:2]
-    facets = np.full((rows, columns, FACET), np.nan)
+    facets = np.zeros((rows, columns, FACET)) if facets is None else facets
     sigma = np.full((rows, columns), np.inf)
     limits = np.array((parameters.noise_factor, parameters.pixel_offset, parameters.grow_offset))
     fits, down, best = np.empty((3, rows, columns)), np.empty((10, columns)), np.empty((2, columns))
     spread = np.full((rows + 2, columns + 2), np.inf)  # with a border
     law, pixels = patches.noise.law, patches.size**2
-    _fit_facets(sums, law, pixels, patches.edge, limits, fits, spread, down, best[0], best[1], facets, sigma)
+    filled = np.ascontiguousarray(sums[:, :, 0])
+    _fit_facets(filled, sums, law, pixels, patches.edge, limits, fits, spread, down, best[0], best[1], facets, sigma)
     return replace(patches, sums=sums, facets=facets, sigma=sigma)
 
 
@@ -120,6 +121,7 @@ def fit_plane(s: Array, plane: Array) -> float:
 
 @leaf_kernel
 def _fit_facets(
+    filled: Array,
     sums: Array,
     noise: Array,
     pixels: float,
@@ -139,7 +141,7 @@ def _fit_facets(
             right = min(left + _STRETCH, columns - 2) + 2
             seen = 0.0
             for column in range(left, right):
-                seen = max(seen, sums[row - 1, column, 0], sums[row, column, 0], sums[row + 1, column, 0])
+                seen = max(seen, filled[row - 1, column], filled[row, column], filled[row + 1, column])
             # Windows with enough pixels hold a patch that is at least half full.
             if seen < 0.5 * pixels:
                 continue
@@ -151,7 +153,7 @@ def _fit_facets(
         seen = 0.0
         for column in range(columns):
             best[column], which[column] = np.inf, 0.0
-            seen = max(seen, sums[row, column, 0])
+            seen = max(seen, filled[row, column])
         if seen < _FILLED_MIN * pixels:
             continue
         for i in range(3):
@@ -159,7 +161,7 @@ def _fit_facets(
                 _choose(spread[row + i, j : j + columns], 3.0 * i + j, best, which)
         for column in range(columns):
             s = sums[row, column]
-            if s[0] < _FILLED_MIN * pixels:
+            if filled[row, column] < _FILLED_MIN * pixels:
                 continue
             ratio = 1.0 / s[3]
             depth = s[0] * ratio

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from skills.geometry.pose import Array
 from skills.kernels import leaf_kernel
 from skills.regions.patch_sums import LANES, add_lanes
-from skills.regions.pixel_labels import PixelLabels
+from skills.regions.plane_contest import PixelLabels
 
 EROSION = 2  # pixels this near to another label are left out [px]
 
@@ -34,42 +34,59 @@ def sum_pixels(
         depth: the image.
         labels: label of each pixel.
         wanted: the label.
-        box: rows and columns from (v0, u0) to, but not with, (v1, u1).
+        box: rows and columns from (v0, u0) to, but not with, (v1, u1); no wider than LANES.
         lens: fx, fy, cx and cy.
         plane: of the label, w = a u + b v + c over pixels.
         limits: nearest and farthest valid depth, and the relative error in depth above which a pixel is left out.
         lanes: room for work, (6 LANES,).
         sums: out, (10,).
     """
-    v0, u0, v1, u1 = max(box[0], EROSION), max(box[1], EROSION), box[2], box[3]
-    v1, u1 = min(v1, depth.shape[0] - EROSION), min(u1, depth.shape[1] - EROSION)
+    reference = fill_lanes(depth, labels, wanted, box, plane, limits, lanes)
+    add_lanes(lanes, 0, box[3] - box[1], box[1], box[0], lens, reference, sums)
+
+
+@leaf_kernel
+def fill_lanes(
+    depth: NDArray[np.float32],
+    labels: PixelLabels,
+    wanted: int,
+    box: tuple[int, int, int, int],
+    plane: tuple[np.float32, np.float32, np.float32],
+    limits: tuple[float, float, float],
+    lanes: NDArray[np.float32],
+) -> float:
+    """Sum the pixels of a box with the wanted label down its columns, for `add_lanes`; what the sums are relative to.
+
+    Arguments are those of `sum_pixels`.
+    """
+    v0, left, v1, right = box
     near, far, tolerance = np.float32(limits[0]), np.float32(limits[1]), np.float32(limits[2])
     one, zero = np.float32(1.0), np.float32(0.0)
     mine, beside = np.int16(wanted), np.uint64(EROSION)
     a, b, c = plane
-    for left in range(u0, u1, LANES):
-        wide = min(LANES, u1 - left)
-        first = np.uint64(left)  # unsigned indices need no test for being negative: the loop runs in vectors
-        for k in range(6):
-            for j in range(wide):
-                lanes[k * LANES + j] = zero
-        reference = a * np.float32(left) + b * np.float32(v0) + c
-        for v in range(v0, v1):
-            base, i = a * np.float32(left) + b * np.float32(v) + c, np.float32(v - v0)
-            row = np.uint64(v)
-            for j in range(wide):
-                u = first + np.uint64(j)
-                z = depth[row, u]
-                same = (labels[row, u] == mine) & (labels[row - beside, u] == mine) & (labels[row + beside, u] == mine)
-                same &= (labels[row, u - beside] == mine) & (labels[row, u + beside] == mine)
-                off = abs(z * (a * np.float32(j) + base) - one)
-                good = same & (z >= near) & (z <= far) & (off <= tolerance)
-                m = one if good else zero
-                w = one / z - reference if good else zero
-                lanes[j] += m
-                lanes[LANES + j] += i * m
-                lanes[2 * LANES + j] += i * i * m
-                lanes[3 * LANES + j] += w
-                lanes[4 * LANES + j] += i * w
-                lanes[5 * LANES + j] += w * w
-        add_lanes(lanes, 0, wide, left, v0, lens, np.float64(reference), sums)
+    for k in range(6):
+        for j in range(right - left):
+            lanes[k * LANES + j] = zero
+    reference = a * np.float32(left) + b * np.float32(v0) + c
+    # Unsigned indices need no test for being negative: the loop runs in vectors.
+    start, begin = max(EROSION - left, 0), np.uint64(max(left, EROSION))
+    wide = min(right, depth.shape[1] - EROSION) - left - start
+    for v in range(max(v0, EROSION), min(v1, depth.shape[0] - EROSION)):
+        base, i = a * np.float32(left) + b * np.float32(v) + c, np.float32(v - v0)
+        row = np.uint64(v)
+        for k in range(wide):
+            j, u = start + k, begin + np.uint64(k)
+            z = depth[row, u]
+            same = (labels[row, u] == mine) & (labels[row - beside, u] == mine) & (labels[row + beside, u] == mine)
+            same &= (labels[row, u - beside] == mine) & (labels[row, u + beside] == mine)
+            off = abs(z * (a * np.float32(j) + base) - one)
+            good = same & (z >= near) & (z <= far) & (off <= tolerance)
+            m = one if good else zero
+            w = one / z - reference if good else zero
+            lanes[j] += m
+            lanes[LANES + j] += i * m
+            lanes[2 * LANES + j] += i * i * m
+            lanes[3 * LANES + j] += w
+            lanes[4 * LANES + j] += i * w
+            lanes[5 * LANES + j] += w * w
+    return np.float64(reference)

@@ -15,13 +15,15 @@ from numpy.typing import NDArray
 from skills.geometry.camera import DepthImage
 from skills.geometry.pose import Array
 from skills.kernels import kernel, leaf_kernel
-from skills.regions.growing import PatchRegions, grow_regions
+from skills.regions.growing import PatchRegions
 from skills.regions.noise_level import NoiseLevel, depth_noise
 from skills.regions.parameters import RegionParameters
 from skills.regions.patch_sums import LANES
-from skills.regions.patches import SUMS, Patches, fit_facets, fit_plane, intrinsics, off_plane
-from skills.regions.pixel_labels import PixelLabels, label_pixels
+from skills.regions.patches import SUMS, Patches, fit_plane, intrinsics, off_plane
+from skills.regions.pixel_labels import label_pixels
 from skills.regions.pixel_sums import EROSION, sum_pixels
+from skills.regions.plane_contest import PixelLabels
+from skills.regions.second_look import look_again
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,22 +56,19 @@ def refine_regions(
     depth = image.depth
     labels, bare = np.full(depth.shape, -1, dtype=np.int16), np.zeros(depth.shape, dtype=np.int16)
     inner = np.zeros(coarse.labels.shape, dtype=np.bool_)
-    planes, layers = coarse.planes, coarse.labels[None]
-    pixel_planes = _in_pixels(planes, lens)
-    label_pixels(depth, patches.size, limits, patches.sums, layers, planes, pixel_planes, inner, labels, bare)
-    lanes, found = np.empty(6 * LANES, np.float32), np.empty(patches.size**2, np.int16)
-    left = np.zeros(patches.sums.shape)
-    if _sum_left(depth, patches.size, limits, lens, patches.sums, inner, bare, lanes, left):
-        rest = grow_regions(fit_facets(patches, left, parameters), parameters)
-        if len(rest.planes):
-            planes = np.concatenate((planes, rest.planes))
-            second = np.where(rest.labels >= 0, rest.labels + len(coarse.planes), -1).astype(np.int32)
-            layers = np.stack((coarse.labels, second))
-            pixel_planes = _in_pixels(planes, lens)
-            label_pixels(depth, patches.size, limits, patches.sums, layers, planes, pixel_planes, inner, labels, bare)
+    planes, pixel_planes = coarse.planes, _in_pixels(coarse.planes, lens)
+    of_patches = depth, patches.size, limits, patches.sums
+    label_pixels(*of_patches, coarse.labels, None, planes, pixel_planes, inner, labels, bare)
+    found = look_again(image, patches, coarse, inner, bare, parameters)
+    if found is not None:
+        planes, pixel_planes = found.planes, _in_pixels(found.planes, lens)
+        if (found.numbers != np.arange(len(found.numbers))).any():
+            labels = np.append(found.numbers, -1).astype(np.int16)[labels]
+        label_pixels(*of_patches, found.coarse, found.fine, planes, pixel_planes, inner, labels, bare)
     planes = np.array(planes)
     sums, sigma, bend = np.zeros((len(planes), SUMS)), np.zeros(len(planes)), np.zeros(len(planes))
-    _sum_regions(depth, patches.size, limits, lens, patches.sums, inner, labels, pixel_planes, lanes, found, sums)
+    lanes, met = np.empty(6 * LANES, np.float32), np.empty(patches.size**2, np.int16)
+    _sum_regions(depth, patches.size, limits, lens, patches.sums, inner, labels, pixel_planes, lanes, met, sums)
     _refit(patches.sums, patches.size, limits[4:], inner, labels, sums, planes, sigma, bend)
     return Segmentation(labels, planes, sigma, bend, patches.noise)
 
@@ -79,45 +78,6 @@ def _in_pixels(planes: Array, lens: Array) -> NDArray[np.float32]:
     fx, fy, cx, cy = lens
     a, b = planes[:, 0] / fx, planes[:, 1] / fy
     return np.column_stack((a, b, planes[:, 2] - a * cx - b * cy)).astype(np.float32)
-
-
-@leaf_kernel
-def _sum_left(
-    depth: NDArray[np.float32],
-    size: int,
-    limits: Array,
-    lens: Array,
-    patch_sums: Array,
-    inner: NDArray[np.bool_],
-    bare: PixelLabels,
-    lanes: NDArray[np.float32],
-    left: Array,
-) -> bool:
-    """Sums over the pixels of each patch that are in no region or at odds with theirs; whether there are any."""
-    rows, columns = inner.shape
-    height, width = depth.shape
-    nowhere = np.float32(0.0), np.float32(0.0), np.float32(0.0)
-    found = False
-    for row in range(rows):
-        for column in range(columns):
-            if inner[row, column] or patch_sums[row, column, 0] == 0.0:
-                continue
-            v0, u0 = row * size, column * size
-            v1, u1 = min(v0 + size, height), min(u0 + size, width)
-            first, wide = np.uint64(u0), u1 - u0
-            count = 0
-            for v in range(v0, v1):
-                line = bare[v]
-                for j in range(wide):
-                    count += line[first + np.uint64(j)]
-            if count == (v1 - v0) * wide:
-                for k in range(10):
-                    left[row, column, k] = patch_sums[row, column, k]
-            elif count > 0:
-                allowed = (limits[0], limits[1], np.inf)
-                sum_pixels(depth, bare, 1, (v0, u0, v1, u1), lens, nowhere, allowed, lanes, left[row, column])
-            found |= left[row, column, 0] > 0.0
-    return found
 
 
 @leaf_kernel

@@ -3,7 +3,7 @@
 Where the means of a region's patches stray from its plane by more than noise does, the region is cut along a line
 through its middle, in four directions; each patch then goes to the plane that it is nearer to, and the planes are
 fitted again (k-means with planes for means, after Bradley and Mangasarian, 2000). The best cut stands if the two would
-not merge again.
+not merge again, and if each is in one place: noise that was taken for two planes lies scattered.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from skills.kernels import kernel, leaf_kernel
 from skills.regions.patches import fit_plane, misfit, off_plane
 
 _STRAY = 1.6  # times the noise of patch means, which neighbours share in part, is no reason to look closer
+_SCATTERED = 0.25  # share of neighbours on different sides above which a cut has found nothing but noise
 _ROUNDS = 4  # of assigning patches and fitting planes
 
 
@@ -86,13 +87,19 @@ def split_regions(
             and misfit(best_parts[1], best_planes[1], planes[label]) <= limit
         ):
             continue
+        for k in range(len(own)):
+            if side[k]:
+                labels[own[k] // columns, own[k] % columns] = count
+        if _scatter(labels, own, label, count) > _SCATTERED:
+            for index in own:
+                labels[index // columns, index % columns] = label
+            continue
         kept, end = 0, len(own)
         while kept < end:
             if side[kept] == 0:
                 kept += 1
                 continue
             end -= 1
-            labels[own[kept] // columns, own[kept] % columns] = count
             own[kept], own[end] = own[end], own[kept]
             side[kept] = side[end]
         for part in range(2):
@@ -130,6 +137,21 @@ def _gather(
             if region >= 0:
                 members[starts[region] + sizes[region]] = row * columns + column
                 sizes[region] += 1
+
+
+@leaf_kernel
+def _scatter(labels: NDArray[np.int32], own: NDArray[np.int64], one: int, other: int) -> float:
+    """Of the neighbours among patches of two regions, the share that are not in the same one."""
+    rows, columns = labels.shape
+    pairs, mixed = 0, 0
+    for index in own:
+        row, column = index // columns, index % columns
+        here = labels[row, column]
+        for i, j in ((row + 1, column), (row, column + 1)):
+            if i < rows and j < columns and (labels[i, j] == one or labels[i, j] == other):
+                pairs += 1
+                mixed += labels[i, j] != here
+    return mixed / max(pairs, 1)
 
 
 @leaf_kernel

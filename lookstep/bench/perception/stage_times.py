@@ -82,7 +82,7 @@ def time_stages(walked: WalkFrames, configuration: Configuration, progress: Prog
             extraction = times.timed("extract", examine_regions, image, parameters)
             times.timed("baseline", find_regions, image, parameters)
             patches = times.timed("patches", fit_patches, image, parameters)
-            coarse = times.timed("growing", grow_regions, patches, parameters)
+            coarse = times.timed("growing", grow_regions, patches, parameters, parameters.patches_min)
             fine = times.timed("refinement", refine_regions, image, patches, coarse, parameters)
             pieces = (fine.labels, fine.planes, fine.sigma, fine.bend, parameters, fine.noise)
             times.timed("polygons", polygons_of, image, *pieces)

@@ -17,7 +17,7 @@ ODD_LENS = PinholeCamera(640, 480, 610.0, 540.0, 250.0, 300.0)
 
 def segment(image: DepthImage) -> Segmentation:
     patches = fit_patches(image, PARAMETERS)
-    return refine_regions(image, patches, grow_regions(patches, PARAMETERS), PARAMETERS)
+    return refine_regions(image, patches, grow_regions(patches, PARAMETERS, PARAMETERS.patches_min), PARAMETERS)
 
 
 def white(image: DepthImage, sigma: float, seed: int = 0, lost: float = 0.0) -> DepthImage:
