@@ -144,6 +144,7 @@ class Executor:
         time: float,
         budget: float,
         deadline: float | None = None,
+        late: float = 0.0,
     ) -> Job:
         """Begin a computation of a pure function of immutable arguments.
 
@@ -154,8 +155,10 @@ class Executor:
             time: robot time now [s].
             budget: robot time after which a lockstep result is delivered [s].
             deadline: robot time at which the result is needed, for the record [s].
+            late: robot time by which a lockstep result comes after its budget; of an injected fault [s].
         """
         job = Job(self._submissions, path, time, budget, deadline)
+        job.due += late
         self._submissions += 1
         job.future = self._pool.submit(_compute, function, arguments)
         self._pending.append(job)

@@ -116,12 +116,17 @@ class SkillParameters:
 
 
 class SkillLeaf(Leaf):
-    """A leaf that computes for longer than a tick: submits when it starts, polls, cancels when it is preempted."""
+    """A leaf that computes for longer than a tick: submits when it starts, polls, cancels when it is preempted.
+
+    Attributes:
+        slower_by: robot time by which results come later than they would; of an injected fault [s].
+    """
 
     Parameters: ClassVar[type] = SkillParameters
 
     def __init__(self, path: str, context: Context, parameters: Any, ports: dict[str, Slot]) -> None:
         super().__init__(path, context, parameters, ports)
+        self.slower_by = 0.0
         self._job: Job | None = None
 
     @classmethod
@@ -184,6 +189,7 @@ class SkillLeaf(Leaf):
             time=self.context.time,
             budget=budget,
             deadline=call.deadline,
+            late=self.slower_by,
         )
 
 

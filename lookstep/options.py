@@ -25,6 +25,7 @@ class RunOptions:
         preset: name of a shipped preset, or a YAML file.
         assignments: `subject.key=value`, `course.option=value` or `/node/path.key=value`.
         record: recording file to write.
+        faults: file of faults to inject; none where None.
         out: folder for `summary.json`, `trace.jsonl` and `run.json`, from which the run can be replayed.
     """
 
@@ -39,4 +40,5 @@ class RunOptions:
     preset: str | None = None
     assignments: tuple[str, ...] = ()
     record: Path | None = None
+    faults: Path | None = None
     out: Path | None = None

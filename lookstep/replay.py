@@ -26,6 +26,7 @@ from behaviors.trace_file import LARGEST_VALUE
 from behaviors.values import from_json
 from lookstep.configuration import Configuration, split_assignments, with_assignments
 from lookstep.errors import UserError
+from lookstep.faults import break_leaves, faulty_robot
 from lookstep.run_file import TRACE_FILE, RunFile
 from lookstep.trees import tree_path
 from lookstep.world import build_world
@@ -128,9 +129,9 @@ def _tree(
     in_real_time = ExecutorMode(recorded.options.executor) is ExecutorMode.REALTIME
     executor = RecordedExecutor(trace) if in_real_time else Executor()
     try:
-        return Tree(
+        tree = Tree(
             spec,
-            robot,
+            faulty_robot(robot, recorded.faults),
             rate=trace.rate,
             executor=executor,
             parameters=configuration.by_subject(),
@@ -140,6 +141,8 @@ def _tree(
     except (SettingError, ParameterError) as error:
         executor.shutdown()
         raise UserError(f"--set: {error}") from error
+    break_leaves(tree, [fault for fault in recorded.faults if fault.at in {node.path for node in tree.nodes}])
+    return tree
 
 
 def _play_back(tree: Tree, trace: RecordedTrace, folder: Path) -> Playback:

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from behaviors.faults import Fault
 from behaviors.values import ValueFormatError, from_json, to_json
 from lookstep.configuration import Configuration
 from lookstep.errors import UserError
@@ -36,6 +37,7 @@ class RunFile:
         course: where it walked.
         goal: x [m], y [m], yaw [rad].
         nodes: settings of nodes by path and parameter.
+        faults: those that were injected; the course has those of its blocks already.
         tree: path of the tree's file.
         sources: texts of the tree's files, by path.
         versions: of the packages that can change a run.
@@ -46,6 +48,7 @@ class RunFile:
     course: Course
     goal: tuple[float, float, float]
     nodes: Mapping[str, Mapping[str, Any]]
+    faults: tuple[Fault, ...]
     tree: str
     sources: Mapping[str, str]
     versions: Mapping[str, str]
@@ -63,6 +66,7 @@ class RunFile:
             "course": to_json(self.course),
             "goal": list(self.goal),
             "nodes": {path: {key: to_json(value) for key, value in keys.items()} for path, keys in self.nodes.items()},
+            "faults": to_json(self.faults),
             "tree": self.tree,
             "sources": dict(self.sources),
             "versions": dict(self.versions),
@@ -95,6 +99,7 @@ class RunFile:
                 course=from_json(table["course"]),
                 goal=tuple(table["goal"]),
                 nodes={path: {key: from_json(v) for key, v in keys.items()} for path, keys in table["nodes"].items()},
+                faults=from_json(table["faults"]),
                 tree=table["tree"],
                 sources=table["sources"],
                 versions=table["versions"],

@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from behaviors import Executor, ExecutorMode, OperatorEvent, SettingError, Trace, Tree, TreeSpec, load_tree
+from behaviors import Executor, ExecutorMode, OperatorEvent, Robot, SettingError, Trace, Tree, TreeSpec, load_tree
 from behaviors import Outcome as TreeOutcome
 from lookstep.configuration import Assignments, Configuration, load_configuration, split_assignments
 from lookstep.errors import UserError
+from lookstep.faults import break_leaves, faulty_course, faulty_robot, load_faults
 from lookstep.moment import Moment, Observer
 from lookstep.options import RunOptions
 from lookstep.run_file import RUN_FILE, TRACE_FILE, RunFile
@@ -49,8 +50,11 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
     configuration = load_configuration(options.preset, assignments.subjects)
     spec = load_tree(tree_path(options.tree))
     course = _course(options, assignments.course)
+    faults = () if options.faults is None else load_faults(options.faults, course)
+    course = faulty_course(course, faults)
     world = build_world(course, configuration, options.seed)
-    tree = _tree(spec, world, configuration, assignments, options)
+    tree = _tree(spec, faulty_robot(world, faults), configuration, assignments, options)
+    break_leaves(tree, faults)
     # From here on the input is known to be good.
     for folder in filter(None, (options.out, options.record and options.record.parent)):
         folder.mkdir(parents=True, exist_ok=True)
@@ -62,6 +66,7 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
             course=course,
             goal=options.goal or course.goal,
             nodes=assignments.nodes,
+            faults=faults,
             tree=spec.file,
             sources=spec.sources,
             versions=installed_versions(),
@@ -197,13 +202,13 @@ def _course(options: RunOptions, course_options: Mapping[str, Any]) -> Course:
 
 
 def _tree(
-    spec: TreeSpec, world: KinematicWorld, configuration: Configuration, assignments: Assignments, options: RunOptions
+    spec: TreeSpec, robot: Robot, configuration: Configuration, assignments: Assignments, options: RunOptions
 ) -> Tree:
     executor = Executor(ExecutorMode(options.executor))
     try:
         return Tree(
             spec,
-            world,
+            robot,
             rate=TICK_RATE,
             executor=executor,
             parameters=configuration.by_subject(),

@@ -35,6 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="KEY=VALUE",
         help="one parameter: subject.key=value, course.option=value or /node/path.key=value; may be repeated",
     )
+    parser.add_argument("--faults", type=Path, metavar="FILE", help="inject the faults that a YAML file lists")
     parser.add_argument("--record", type=Path, metavar="RRD", help="write a recording for the rerun viewer")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json and trace.jsonl into this folder")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the summary here as well")
@@ -53,6 +54,7 @@ def execute(options: argparse.Namespace) -> int:
         time_limit=options.time_limit,
         preset=options.preset,
         assignments=tuple(options.assignments),
+        faults=options.faults,
         record=options.record,
         out=options.out,
     )

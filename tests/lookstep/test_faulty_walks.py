@@ -1,0 +1,98 @@
+"""Walks with injected faults: the robot halts with a reason that an operator reads, and goes on when it is over."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import lookstep
+from behaviors.faults import POSSIBLE, read_faults
+from lookstep.__main__ import main
+from lookstep.errors import UserError
+from lookstep.replay import ReplayOptions, replay
+from lookstep.summary import Outcome, Summary
+from strict_yaml import YamlError, parse_document
+
+SMALL_CAMERA = ("camera.resolution=0.3125",)
+PLAN = "/look_and_step/walk/sequence/walk_to/follow_path/selector/take_a_step/sequence/plan/sequence/plan_footsteps"
+
+
+def walk(text: str, folder: Path, seconds: float, course: str = "flat", **options) -> Summary:
+    file = folder / "faults.yaml"
+    file.write_text(text)
+    return lookstep.run(
+        course=course, time_limit=seconds, assignments=SMALL_CAMERA, faults=file, out=folder / "out", **options
+    )
+
+
+def reasons(folder: Path) -> dict[str, list[tuple[float, str]]]:
+    """What each leaf said, and when, by its name."""
+    said: dict[str, list[tuple[float, str]]] = {}
+    for line in (folder / "out" / "trace.jsonl").read_text().splitlines()[1:]:
+        tick = json.loads(line)
+        for path, reason in tick.get("reason", {}).items():
+            said.setdefault(path.rpartition("/")[2], []).append((tick["time"], reason))
+    return said
+
+
+def test_a_robot_that_sees_nothing_halts_with_the_reason_and_goes_on_when_it_sees_again(tmp_path: Path):
+    summary = walk("faults: [{at: sensor:depth, mode: off, start: 0.5, duration: 5.0}]", tmp_path, 7.0, preset="brisk")
+    said = reasons(tmp_path)["ground_fresh"]
+    assert next(reason for _, reason in said if "limit 1.5 s" in reason).startswith("regions are ")
+    assert summary.pauses.count == 1 and summary.steps.total >= 4
+    assert replay(tmp_path / "out", ReplayOptions()).diff.identical
+
+
+def test_a_planner_that_finds_nothing_and_one_that_raises(tmp_path: Path):
+    summary = walk(f"faults: [{{at: {PLAN}, mode: off, duration: 1.0}}]", tmp_path, 3.0)
+    assert [why for _, why in reasons(tmp_path)["plan_footsteps"]].count("injected fault") == 2
+    assert summary.first_step_after_s is not None and 2.0 < summary.first_step_after_s < 2.6
+    summary = walk(f"faults: [{{at: {PLAN}, mode: exception, start: 1.5}}]", tmp_path, 4.0)
+    assert summary.outcome is Outcome.ERROR
+    assert summary.reason == f"{PLAN}: InjectedFaultError in tick: injected fault"
+
+
+def test_a_block_that_is_gone_is_a_pit_that_the_robot_does_not_step_into(tmp_path: Path):
+    course = tmp_path / "two_pads.yaml"
+    pads = ((1.6, 0.0), (3.0, 2.3))
+    objects = "".join(
+        f"  - {{name: pad_{i}, size: [{length}, 1.2, 0.2], position: [{x}, 0, -0.1]}}\n"
+        for i, (length, x) in enumerate(pads)
+    )
+    course.write_text(f"start: {{x: 0, y: 0}}\ngoal: {{x: 3, y: 0}}\nobjects:\n{objects}")
+    text = "faults: [{at: world:pad_1, mode: off, start: 0.1}]"
+    summary = walk(text, tmp_path, 6.0, str(course))
+    assert summary.outcome is Outcome.TIMEOUT and summary.distance_m < 0.8
+    assert replay(tmp_path / "out", ReplayOptions(outputs=True)).diff.identical
+
+
+def test_faults_that_cannot_be_injected_are_refused_before_anything_is_written(tmp_path: Path, capsys):
+    with pytest.raises(
+        YamlError, match=r'course flat has no block "grond"; did you mean "ground"\? \(blocks: ground\)'
+    ):
+        walk("faults: [{at: world:grond, mode: off}]", tmp_path, 1.0)
+    with pytest.raises(UserError, match='--faults: no node "/look_and_step/wal"'):
+        walk("faults: [{at: /look_and_step/wal, mode: off}]", tmp_path, 1.0)
+    with pytest.raises(UserError, match="--faults: /look_and_step/walk is no leaf"):
+        walk("faults: [{at: /look_and_step/walk, mode: off}]", tmp_path, 1.0)
+    assert not (tmp_path / "out").exists()
+    assert main(["run", "--course", "flat", "--faults", str(tmp_path / "missing.yaml")]) == 2
+    assert "cannot read the file" in capsys.readouterr().err
+
+
+def test_the_page_has_every_fault_that_is_possible_and_its_file_is_read():
+    page = (Path(__file__).parents[2] / "docs" / "faults.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```yaml\n(.*?)```", page, re.DOTALL)
+    assert {placed.fault.kind for placed in read_faults(parse_document(example))} == {
+        "sensor:depth",
+        "sensor:state",
+        "leaf",
+        "world",
+    }
+    rows = dict(re.findall(r"^\| `(\S+?)` \|[^|]*\| ([^|]*) \|$", page, re.MULTILINE))
+    names = {"/path/of/a/leaf": "leaf", "world:BLOCK": "world"}
+    listed = {names.get(at, at): re.findall(r"`(\w+)`", modes) for at, modes in rows.items()}
+    assert listed == {kind: [mode.value for mode in modes] for kind, modes in POSSIBLE.items()}
