@@ -24,6 +24,7 @@ class RunOptions:
         time_limit: robot time after which the run ends [s].
         preset: name of a shipped preset, or a YAML file.
         assignments: `subject.key=value`, `course.option=value` or `/node/path.key=value`.
+        live: file of parameters that is read again whenever it is saved; none where None.
         record: recording file to write.
         faults: file of faults to inject; none where None.
         out: folder for `summary.json`, `trace.jsonl` and `run.json`, from which the run can be replayed.
@@ -39,6 +40,7 @@ class RunOptions:
     time_limit: float = 180.0
     preset: str | None = None
     assignments: tuple[str, ...] = ()
+    live: Path | None = None
     record: Path | None = None
     faults: Path | None = None
     out: Path | None = None

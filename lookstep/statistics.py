@@ -9,6 +9,7 @@ import numpy as np
 
 from behaviors import JobRecord
 from lookstep.configuration import Configuration
+from lookstep.deadlines import DeadlineAccounts
 from lookstep.moment import Moment
 from lookstep.summary import Figures, PauseCounts, SkillTiming
 from sim_envs.courses import Ground
@@ -53,6 +54,7 @@ class Statistics:
         self._supports: dict[int, float] = {}
         self._foothold_errors: list[float] = []
         self._jobs: dict[str, list[JobRecord]] = {"PlanFootsteps": [], "ExtractRegions": []}
+        self._accounts = DeadlineAccounts()
         self._frames: dict[int, PlanarRegions] = {}
         self._last_plan: FootstepPlan | None = None
         self._in_view: list[bool] = []
@@ -68,6 +70,7 @@ class Statistics:
         for event in moment.events:
             self._note_step(event)
         self._note_support(moment)
+        self._accounts.take(moment.jobs)
         for job in moment.jobs:
             kind = moment.tree.node(job.path).kind
             if kind in self._jobs and job.compute_seconds is not None:
@@ -94,6 +97,7 @@ class Statistics:
             first_step_after_s=None if first is None else round(first - self._first_time, 3),
             plan=_timing(self._jobs["PlanFootsteps"]),
             regions=_timing(self._jobs["ExtractRegions"]),
+            deadlines=self._accounts.report(),
             min_support_fraction=min(self._supports.values(), default=None),
             view_fraction=round(float(np.mean(self._in_view)), 4) if self._in_view else None,
             foothold_error_m=round(float(np.median(self._foothold_errors)), 6) if self._foothold_errors else None,

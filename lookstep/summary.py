@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lookstep.deadlines import LeafDeadlines
 from sim_envs.judge import StepCounts
 
 _VERSIONED = ("lookstep", "dm-control", "mujoco", "numba", "numpy", "opencv-python-headless", "pin", "py-trees")
@@ -71,6 +72,7 @@ class Figures:
         steps: by the paper's definitions (section Results), judged on the truth; pauses likewise.
         first_step_after_s: robot time from the goal to the first lift-off; None where no step was made.
         plan, regions: compute times of footstep planning and of region extraction.
+        deadlines: budget, use and margin of every leaf that computes.
         min_support_fraction: smallest share of a stance sole's area within 1 cm of true ground at mid-stance.
         view_fraction: share of plans whose footholds all lie on regions of the newest depth image.
         foothold_error_m: median distance of a landed sole's centre from its commanded foothold.
@@ -84,6 +86,7 @@ class Figures:
     first_step_after_s: float | None
     plan: SkillTiming
     regions: SkillTiming
+    deadlines: tuple[LeafDeadlines, ...]
     min_support_fraction: float | None
     view_fraction: float | None
     foothold_error_m: float | None

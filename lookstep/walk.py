@@ -18,6 +18,7 @@ from behaviors import Outcome as TreeOutcome
 from lookstep.configuration import Assignments, Configuration, load_configuration, split_assignments
 from lookstep.errors import UserError
 from lookstep.faults import break_leaves, faulty_course, faulty_robot, load_faults
+from lookstep.live import LiveParameters
 from lookstep.moment import Moment, Observer
 from lookstep.options import RunOptions
 from lookstep.run_file import RUN_FILE, TRACE_FILE, RunFile
@@ -110,12 +111,15 @@ def _loop(
     goal_distance: float,
 ) -> _Ending:
     pace = _Pace(_speed(options))
+    live = None if options.live is None else LiveParameters(options.live, tree)
     tree.send(OperatorEvent("goal", goal))
     outcome, reason = None, ""
     try:
         while outcome is None:
             world.advance(tree.next_tick_time - world.time)
             pace.wait_until(world.time)
+            if live is not None:
+                live.poll()
             tree.tick()
             moment = _moment(world, tree)
             for observer in watching:

@@ -10,6 +10,7 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 from rich.table import Table
 
+from lookstep.deadlines import LeafDeadlines
 from lookstep.moment import Moment
 from lookstep.options import RunOptions
 from lookstep.summary import Outcome, SkillTiming, Summary
@@ -63,10 +64,29 @@ def print_summary(summary: Summary, options: RunOptions) -> None:
     for name, value in _rows(summary):
         table.add_row(f"[dim]{name}[/]", value)
     console.print(table)
+    if summary.deadlines:
+        console.print(_deadlines(summary.deadlines))
     if options.out is not None:
         console.print(f"[dim]summary  [/] {options.out / 'summary.json'}")
     if options.record is not None:
         console.print(f"[dim]recording[/] {options.record}   (open it: ./run rerun {options.record})")
+
+
+def _deadlines(accounts: tuple[LeafDeadlines, ...]) -> Table:
+    """One line a leaf that computes: budget, use, margin, and what was left of the swing."""
+    title = "[bold]deadlines[/] [dim]in ms; landing: s left of the swing, at least[/]"
+    table = Table(title=title, title_justify="left", box=None)
+    for column in ("leaf", "count", "budget", "median", "p99", "least margin", "missed", "landing"):
+        table.add_column(
+            column, justify="left" if column == "leaf" else "right", style="dim" if column == "leaf" else ""
+        )
+    for leaf in accounts:
+        landing = _NONE if leaf.landing_s_least is None else f"{leaf.landing_s_least:.2f}"
+        cells = (leaf.budget_ms, leaf.used_ms_median, leaf.used_ms_p99, leaf.margin_ms_least)
+        numbers = [_NONE if cell is None else f"{cell:.1f}" for cell in cells]
+        missed = f"{leaf.misses + leaf.late}"
+        table.add_row(leaf.leaf.rpartition("/")[2], str(leaf.count), *numbers, missed, landing)
+    return table
 
 
 def _rows(summary: Summary) -> list[tuple[str, str]]:

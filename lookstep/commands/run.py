@@ -36,6 +36,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="one parameter: subject.key=value, course.option=value or /node/path.key=value; may be repeated",
     )
     parser.add_argument("--faults", type=Path, metavar="FILE", help="inject the faults that a YAML file lists")
+    parser.add_argument(
+        "--live",
+        type=Path,
+        metavar="FILE",
+        help="read target.key: value from this YAML file whenever it is saved while the robot walks",
+    )
     parser.add_argument("--record", type=Path, metavar="RRD", help="write a recording for the rerun viewer")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json and trace.jsonl into this folder")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the summary here as well")
@@ -55,6 +61,7 @@ def execute(options: argparse.Namespace) -> int:
         preset=options.preset,
         assignments=tuple(options.assignments),
         faults=options.faults,
+        live=options.live,
         record=options.record,
         out=options.out,
     )

@@ -29,7 +29,10 @@ def default_blueprint(start: tuple[float, float]) -> rrb.Blueprint:
             tracking_entity="/world/robot/pelvis",
         ),
     )
-    tree = rrb.StateTimelineView(name="Behavior tree", origin="/tree")
+    tree = rrb.Tabs(
+        rrb.StateTimelineView(name="Behavior tree", origin="/tree"),
+        rrb.StateTimelineView(name="Deadlines", origin="/deadlines"),
+    )
     eyes = rrb.Horizontal(
         rrb.Spatial2DView(name="Regions extracted", origin="/camera/regions"),
         rrb.Tabs(
@@ -42,6 +45,7 @@ def default_blueprint(start: tuple[float, float]) -> rrb.Blueprint:
     plots = rrb.Tabs(
         rrb.TimeSeriesView(name="Planning time [ms]", origin="/timing/PlanFootsteps"),
         rrb.TimeSeriesView(name="Region time [ms]", origin="/timing/ExtractRegions"),
+        rrb.TimeSeriesView(name="Margins [ms]", origin="/margins"),
         rrb.TimeSeriesView(name="DCM error [mm]", origin="/control/dcm_error"),
         rrb.TimeSeriesView(name="Noise at 1 m [mm]", origin="/noise"),
         rrb.TimeSeriesView(name="Drift [mm]", origin="/drift"),

@@ -28,6 +28,13 @@ STATUS_COLORS = {
     "idle": (70, 74, 82, 255),
 }
 
+VERDICT_COLORS: dict[str, tuple[int, int, int, int]] = {
+    "in time": (102, 194, 165, 255),
+    "tight": (255, 217, 47, 255),
+    "missed": (214, 69, 65, 255),
+    "cancelled": (190, 190, 190, 255),
+}
+
 # Told apart at a glance, also side by side; after Green-Armytage's alphabet of contrasting colours, softened.
 REGION_COLORS: tuple[tuple[int, int, int], ...] = (
     (102, 194, 165),

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 import rerun as rr
 
-from behaviors import Node, Status, Tree
+from behaviors import JobRecord, Node, Status, Tree
+from lookstep.deadlines import verdict
 from lookstep.moment import Moment
 from lookstep.recording import palette, scene
 from lookstep.recording.blueprint import TIMELINE, default_blueprint
@@ -74,6 +75,7 @@ class Recording:
         self._box_poses: dict[str, Any] = {}
         self._next_links = self._next_flush = 0.0
         self._next_value: dict[str, float] = {}
+        self._deadline_lanes: set[str] = set()
         self._log_static(about)
         self._links = self._log_links(world)
         self._lanes = self._log_lanes(tree.nodes)
@@ -205,10 +207,26 @@ class Recording:
 
     def _log_timing(self, moment: Moment) -> None:
         for job in moment.jobs:
+            self._log_deadline(job)
             kind = moment.tree.node(job.path).kind
             if job.compute_seconds is not None:
                 self._columns.scalar(f"timing/{kind}/used", job.ended, 1e3 * job.compute_seconds)
                 self._columns.scalar(f"timing/{kind}/budget", job.ended, 1e3 * job.budget)
+
+    def _log_deadline(self, job: JobRecord) -> None:
+        """A lane a leaf that says how its computations stand to their budgets, and the margins as plots."""
+        name = job.path.rpartition("/")[2]
+        lane = f"deadlines/{name}"
+        if job.path not in self._deadline_lanes:
+            self._deadline_lanes.add(job.path)
+            states = list(palette.VERDICT_COLORS)
+            colors = np.array(list(palette.VERDICT_COLORS.values()), dtype=np.uint8)
+            self._stream.log(lane, rr.StateConfiguration(values=states, labels=states, colors=colors), static=True)
+        self._columns.state(lane, job.submitted, verdict(job))
+        if job.margin is not None:
+            self._columns.scalar(f"margins/{name}", job.ended, 1e3 * job.margin)
+        if job.deadline_margin is not None:
+            self._columns.scalar(f"margins/{name}/before_landing", job.ended, 1e3 * job.deadline_margin)
 
     def _log_steps(self, moment: Moment) -> None:
         for event in moment.events:

@@ -55,6 +55,10 @@ def test_recording_has_timing_control_signals_and_reasons(chunks):
         "/timing/ExtractRegions/used",
         "/control/dcm_error",
         "/control/lateral/com",
+        "/deadlines/plan_footsteps",
+        "/deadlines/remember_ground",
+        "/margins/extract_regions",
+        "/margins/plan_footsteps/before_landing",
         "/log",
         "/about",
     }
