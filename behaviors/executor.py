@@ -12,7 +12,7 @@ from __future__ import annotations
 import time as wall
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
@@ -50,6 +50,8 @@ class JobRecord:
         compute_seconds: wall time of the computation; None for a job cancelled before it ended [s].
         cpu_seconds: processor time of its thread alone; None likewise [s].
         outcome: delivered, raised or cancelled.
+        arguments: what was computed from.
+        result: what came out; None where nothing was delivered.
     """
 
     job_id: int
@@ -62,6 +64,8 @@ class JobRecord:
     compute_seconds: float | None
     cpu_seconds: float | None
     outcome: JobOutcome
+    arguments: tuple[Any, ...] = field(repr=False)
+    result: Any = field(repr=False)
 
     @property
     def margin(self) -> float | None:
@@ -89,6 +93,7 @@ class Job:
     """
 
     __slots__ = (
+        "arguments",
         "budget",
         "deadline",
         "digest",
@@ -102,9 +107,18 @@ class Job:
         "submitted",
     )
 
-    def __init__(self, job_id: int, path: str, submitted: float, budget: float, deadline: float | None) -> None:
+    def __init__(
+        self,
+        job_id: int,
+        path: str,
+        arguments: tuple[Any, ...],
+        submitted: float,
+        budget: float,
+        deadline: float | None,
+    ) -> None:
         self.job_id = job_id
         self.path = path
+        self.arguments = arguments
         self.submitted = submitted
         self.budget = budget
         self.deadline = deadline
@@ -157,13 +171,20 @@ class Executor:
             deadline: robot time at which the result is needed, for the record [s].
             late: robot time by which a lockstep result comes after its budget; of an injected fault [s].
         """
-        job = Job(self._submissions, path, time, budget, deadline)
+        job = Job(self._submissions, path, arguments, time, budget, deadline)
         job.due += late
         self._submissions += 1
         job.future = self._pool.submit(_compute, function, arguments)
         self._pending.append(job)
         self._pending.sort(key=lambda pending: (pending.due, pending.job_id))
         return job
+
+    def alarm(self, seconds: float) -> Callable[[], bool] | None:
+        """Whether so much wall time has passed since now; None in lockstep, where wall time decides nothing."""
+        if self.mode is ExecutorMode.LOCKSTEP:
+            return None
+        end = wall.perf_counter() + seconds
+        return lambda: wall.perf_counter() > end
 
     def deliver(self, time: float) -> tuple[Job, ...]:
         """Hand over the results that are due at this robot time, in order."""
@@ -226,6 +247,8 @@ class Executor:
                 compute_seconds=computed and computed.compute_seconds,
                 cpu_seconds=computed and computed.cpu_seconds,
                 outcome=outcome,
+                arguments=job.arguments,
+                result=job.result,
             )
         )
 

@@ -27,6 +27,7 @@ class RunOptions:
         live: file of parameters that is read again whenever it is saved; none where None.
         record: recording file to write.
         faults: file of faults to inject; none where None.
+        plans: folder for the log of every footstep plan.
         out: folder for `summary.json`, `trace.jsonl` and `run.json`, from which the run can be replayed.
     """
 
@@ -43,4 +44,5 @@ class RunOptions:
     live: Path | None = None
     record: Path | None = None
     faults: Path | None = None
+    plans: Path | None = None
     out: Path | None = None

@@ -24,7 +24,7 @@ FORMAT = 1
 RUN_FILE = "run.json"
 TRACE_FILE = "trace.jsonl"
 
-_PATHS = ("record", "out", "faults", "live")
+_PATHS = ("record", "plans", "out", "faults", "live")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

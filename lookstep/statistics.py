@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from behaviors import JobRecord
 from lookstep.configuration import Configuration
 from lookstep.deadlines import DeadlineAccounts
 from lookstep.moment import Moment
@@ -53,7 +52,8 @@ class Statistics:
         self._lift_off_times: dict[int, float] = {}
         self._supports: dict[int, float] = {}
         self._foothold_errors: list[float] = []
-        self._jobs: dict[str, list[JobRecord]] = {"PlanFootsteps": [], "ExtractRegions": []}
+        # Compute time and budget of each job [s]; the jobs themselves hold images.
+        self._jobs: dict[str, list[tuple[float, float]]] = {"PlanFootsteps": [], "ExtractRegions": []}
         self._accounts = DeadlineAccounts()
         self._frames: dict[int, PlanarRegions] = {}
         self._last_plan: FootstepPlan | None = None
@@ -74,7 +74,7 @@ class Statistics:
         for job in moment.jobs:
             kind = moment.tree.node(job.path).kind
             if kind in self._jobs and job.compute_seconds is not None:
-                self._jobs[kind].append(job)
+                self._jobs[kind].append((job.compute_seconds, job.budget))
         for value in moment.tree.blackboard.values().values():
             self._note_value(value)
 
@@ -181,6 +181,5 @@ def _on_regions(points_world: Array, regions: PlanarRegions) -> Array:
     return found
 
 
-def _timing(jobs: list[JobRecord]) -> SkillTiming:
-    times = [job.compute_seconds for job in jobs if job.compute_seconds is not None]
-    return SkillTiming.of(times, [job.budget for job in jobs])
+def _timing(jobs: list[tuple[float, float]]) -> SkillTiming:
+    return SkillTiming.of([compute for compute, _ in jobs], [budget for _, budget in jobs])

@@ -21,6 +21,7 @@ from lookstep.faults import break_leaves, faulty_course, faulty_robot, load_faul
 from lookstep.live import LiveParameters
 from lookstep.moment import Moment, Observer
 from lookstep.options import RunOptions
+from lookstep.plan_log import PlanRecorder
 from lookstep.run_file import RUN_FILE, TRACE_FILE, RunFile
 from lookstep.statistics import Statistics
 from lookstep.summary import Outcome, Summary, installed_versions
@@ -57,7 +58,7 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
     tree = _tree(spec, faulty_robot(world, faults), configuration, assignments, options)
     break_leaves(tree, faults)
     # From here on the input is known to be good.
-    for folder in filter(None, (options.out, options.record and options.record.parent)):
+    for folder in filter(None, (options.out, options.plans, options.record and options.record.parent)):
         folder.mkdir(parents=True, exist_ok=True)
     if options.out is not None:
         tree.trace = Trace(options.out / TRACE_FILE)
@@ -82,6 +83,10 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
 
         recording = Recording(options.record, world, tree, configuration.robot, _about(options), options.seed)
         watching.append(recording)
+    plans = None
+    if options.plans is not None:
+        plans = PlanRecorder(options.plans)
+        watching.append(plans)
     try:
         goal = Goal(*(options.goal or course.goal))
         ending = _loop(world, tree, watching, options, goal, configuration.judge.goal_distance)
@@ -89,6 +94,8 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
         tree.shutdown()
         if recording is not None:
             recording.close()
+        if plans is not None:
+            plans.close()
     summary = _summarise(ending, statistics, tree, options, course)
     if options.out is not None:
         summary.write(options.out / "summary.json")
@@ -194,8 +201,9 @@ def _check(options: RunOptions) -> None:
         raise UserError(f"--time-limit: got {options.time_limit}, needs a positive number of seconds")
     if options.seed < 0:
         raise UserError(f"--seed: got {options.seed}, needs a whole number from 0")
-    if options.out is not None and options.out.exists() and not options.out.is_dir():
-        raise UserError(f"--out {options.out}: is a file, needs a folder")
+    for name, folder in (("out", options.out), ("plans", options.plans)):
+        if folder is not None and folder.exists() and not folder.is_dir():
+            raise UserError(f"--{name} {folder}: is a file, needs a folder")
 
 
 def _course(options: RunOptions, course_options: Mapping[str, Any]) -> Course:

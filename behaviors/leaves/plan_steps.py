@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
 
 from py_trees.common import Status
 
@@ -11,16 +10,7 @@ from behaviors.leaf import Call, SkillLeaf, SkillParameters
 from behaviors.ports import Input, Output
 from behaviors.registry import leaf
 from skills.body_path import SubGoal
-from skills.footsteps import (
-    FootstepParameters,
-    FootstepPlan,
-    Side,
-    Stance,
-    TerrainParameters,
-    plan_footsteps,
-    plan_from_stance,
-    terrain_ahead,
-)
+from skills.footsteps import FootstepPlan, PlanRequest, plan_on_request
 from skills.parameters import parameter, parameters
 from skills.regions import PlanarRegions
 from skills.walking import WalkingPhase, WalkingStatus
@@ -31,50 +21,8 @@ class PlanFootstepsParameters(SkillParameters):
     """How long a plan may take."""
 
     latency: float = parameter(0.2, unit="s", meaning="robot time until a plan is delivered", minimum=0.0, maximum=60.0)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PlanRequest:
-    """All that a plan depends on.
-
-    Attributes:
-        ground: planar regions around the robot.
-        sub_goal: where the next steps should lead.
-        stance: the stance from which the first step is made.
-        first_side: the foot that makes it; None where either may.
-        plan_id: of the plan.
-        first_sequence_id: place of the first step in the walk.
-        reference: the steps planned before that have not begun; None where there are none.
-        footsteps, terrain: parameters.
-    """
-
-    ground: PlanarRegions
-    sub_goal: SubGoal
-    stance: Stance
-    first_side: Side | None
-    plan_id: int
-    first_sequence_id: int
-    reference: FootstepPlan | None
-    footsteps: FootstepParameters
-    terrain: TerrainParameters
-
-
-def plan_on_request(request: PlanRequest) -> FootstepPlan:
-    """Draw the ground, then plan on it."""
-    terrain = terrain_ahead(request.ground, request.stance, request.sub_goal, request.footsteps, request.terrain)
-    ids = {"plan_id": request.plan_id, "first_sequence_id": request.first_sequence_id}
-    if request.first_side is None:
-        return plan_from_stance(
-            terrain, request.stance, request.sub_goal, request.footsteps, reference=request.reference, **ids
-        )
-    return plan_footsteps(
-        terrain,
-        request.stance,
-        request.first_side,
-        request.sub_goal,
-        request.footsteps,
-        reference=request.reference,
-        **ids,
+    search_time: float = parameter(
+        0.1, unit="s", meaning="time after which a search in realtime ends with the best so far", minimum=0.001
     )
 
 
@@ -107,7 +55,9 @@ class PlanFootsteps(SkillLeaf):
             terrain=self.context.parameters["terrain"],
         )
         self._plans += 1
-        return self.call(plan_on_request, request, deadline=self._deadline(status))
+        alarm = self.context.executor.alarm(self.parameters.search_time)
+        timed = () if alarm is None else (alarm,)
+        return self.call(plan_on_request, request, *timed, deadline=self._deadline(status))
 
     def receive(self, result: FootstepPlan) -> Status:
         """Hand an executable plan on."""

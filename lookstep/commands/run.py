@@ -43,6 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="read target.key: value from this YAML file whenever it is saved while the robot walks",
     )
     parser.add_argument("--record", type=Path, metavar="RRD", help="write a recording for the rerun viewer")
+    parser.add_argument("--plans", type=Path, metavar="DIR", help="log every footstep plan with its search here")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json and trace.jsonl into this folder")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the summary here as well")
 
@@ -63,6 +64,7 @@ def execute(options: argparse.Namespace) -> int:
         faults=options.faults,
         live=options.live,
         record=options.record,
+        plans=options.plans,
         out=options.out,
     )
     if options.json is not None and not options.json.parent.is_dir():

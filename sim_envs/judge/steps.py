@@ -77,7 +77,7 @@ class StepJudgement:
         boxes: names of the boxes under the landed sole.
         tilt: of the landed sole [rad].
         length: horizontal distance from the stance sole to the landed sole [m].
-        height_change: landed sole above the stance sole [m].
+        max_step_height: landed sole above the stance sole [m].
     """
 
     sequence_id: int
@@ -90,7 +90,7 @@ class StepJudgement:
     boxes: tuple[str, ...]
     tilt: float
     length: float
-    height_change: float
+    max_step_height: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +137,7 @@ def judge_step(
         boxes=support.boxes,
         tilt=_angle(landed, _UPRIGHT),
         length=math.hypot(offset[0], offset[1]),
-        height_change=float(offset[2]),
+        max_step_height=float(offset[2]),
     )
 
 

@@ -30,7 +30,9 @@ class FootstepParameters:
     ideal_width: float = parameter(0.24, unit="m", meaning="distance sideways that costs nothing", minimum=0.1)
     maximum_width: float = parameter(0.40, unit="m", meaning="largest distance sideways", minimum=0.1, maximum=0.8)
     sole_gap: float = parameter(0.01, unit="m", meaning="smallest gap between the two soles", minimum=0.0, maximum=0.1)
-    height_change: float = parameter(0.26, unit="m", meaning="largest rise or drop of a step", minimum=0.0, maximum=0.6)
+    max_step_height: float = parameter(
+        0.26, unit="m", meaning="largest rise or drop of a step", minimum=0.0, maximum=0.6
+    )
     inward_yaw: float = parameter(radians(10.0), unit="rad", meaning="largest turn inwards", minimum=0.0, maximum=1.0)
     outward_yaw: float = parameter(radians(20.0), unit="rad", meaning="largest turn outwards", minimum=0.0, maximum=1.5)
     uphill_drop: float = parameter(0.12, unit="m", meaning="largest drop off a foot that stands uphill", minimum=0.0)
@@ -77,6 +79,9 @@ class FootstepParameters:
     )
     keep_expansions: int = parameter(
         150, unit="1", meaning="nodes the search for the rest of a kept plan may expand", minimum=1
+    )
+    recheck_expansions: int = parameter(
+        400, unit="1", meaning="nodes the search for a fresh plan may expand where a kept one gets on", minimum=1
     )
 
     wiggle_margin: float = parameter(0.02, unit="m", meaning="distance wanted from a region's edges", minimum=0.0)

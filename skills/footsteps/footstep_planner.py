@@ -12,7 +12,7 @@ import dataclasses
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING
 
-from skills.footsteps.footstep import Footstep, FootstepPlan, PlanOutcome, Side, Stance
+from skills.footsteps.footstep import FootstepPlan, PlanOutcome, Side, Stance
 from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
 from skills.footsteps.kept_steps import holds, kept_footholds, nearly_kept, steps_ahead
 from skills.footsteps.planned_steps import planned_steps
@@ -123,28 +123,38 @@ class WayPlanner:
         """The way to take: one that keeps steps of the plan before where one holds, or else a fresh one."""
         p = self._parameters
         budget = p.max_expansions if max_expansions is None else max_expansions
+        steps = () if reference is None else steps_ahead(reference, self._stance, self._first_side)
+        kept = tuple(kept_footholds(self._terrain, steps, self._rules, p))
+        whole = self._kept_way(kept, budget, out_of_time) if kept else None
+        if whole is not None and whole.reached:
+            # There is a way; a search for another one must not take long.
+            budget = min(budget, p.recheck_expansions)
         found = self._search((), SearchBudget(budget, out_of_time, p.minimum_steps), logged=logs is not None)
         if logs is not None and found.log is not None:
             logs.append(found.log)
         fresh = self._way((), found)
-        steps = () if reference is None else steps_ahead(reference, self._stance, self._first_side)
-        expansions = fresh.expansions
-        for kept in self._beginnings(steps, fresh):
-            rest = SearchBudget(min(p.keep_expansions, budget), out_of_time, max(p.minimum_steps - len(kept), 0))
-            way = self._way(kept, self._search(kept, rest))
-            expansions += way.expansions
-            if holds(way, fresh, p):
-                return dataclasses.replace(way, rejections=fresh.rejections, expansions=expansions)
+        expansions, tried = fresh.expansions, whole
+        shorter = self._shorter(kept, fresh)
+        while tried is not None:
+            expansions += tried.expansions
+            if holds(tried, fresh, p):
+                return dataclasses.replace(tried, rejections=fresh.rejections, expansions=expansions)
+            begun = next(shorter, None)
+            tried = None if begun is None else self._kept_way(begun, budget, out_of_time)
         return dataclasses.replace(fresh, expansions=expansions)
 
-    def _beginnings(self, steps: tuple[Footstep, ...], fresh: Way) -> Iterator[tuple[Foothold, ...]]:
-        """What may be kept of the plan before: as many of its steps as can be, then fewer, then almost the first."""
+    def _kept_way(self, kept: tuple[Foothold, ...], budget: int, out_of_time: Callable[[], bool] | None) -> Way:
+        """The way that begins with kept steps."""
         p = self._parameters
-        kept = tuple(kept_footholds(self._terrain, steps, self._rules, p))
-        for count in range(len(kept), 0, -1):
+        rest = SearchBudget(min(p.keep_expansions, budget), out_of_time, max(p.minimum_steps - len(kept), 0))
+        return self._way(kept, self._search(kept, rest))
+
+    def _shorter(self, kept: tuple[Foothold, ...], fresh: Way) -> Iterator[tuple[Foothold, ...]]:
+        """What else may be kept of the plan before: fewer of its steps, then almost the first."""
+        for count in range(len(kept) - 1, 0, -1):
             yield kept[:count]
         if kept and fresh.footholds:
-            for foothold in nearly_kept(self._terrain, kept[0], fresh.footholds[0], self._rules, p):
+            for foothold in nearly_kept(self._terrain, kept[0], fresh.footholds[0], self._rules, self._parameters):
                 yield (foothold,)
 
     def plan(self, way: Way, plan_id: int, first_sequence_id: int) -> FootstepPlan:

@@ -59,7 +59,7 @@ def spread_field(
         floor, iy, ix = node // (ny * nx), node // nx % ny, node % nx
         z, dearer = field[floor, iy, ix, 2], field[floor, iy, ix, 1]
         away = np.hypot((ix + 0.5) * cell - start[0], (iy + 0.5) * cell - start[1])
-        if away < closest and abs(z - start[2]) < limits.height_change:
+        if away < closest and abs(z - start[2]) < limits.max_step_height:
             closest, at_closest = away, cost
             if away < 1.5 * cell:
                 bound = min(bound, _SPREAD * cost + _SPREAD_STEPS * limits.step_cost)
@@ -78,7 +78,7 @@ def spread_field(
                         continue
                     # A place without ground has no height, and fails every comparison.
                     least, jz = cost + limits.step_cost * distance / limits.stride, field[k, j, i, 2]
-                    if not (least < field[k, j, i, 0] and abs(jz - z) <= limits.height_change):
+                    if not (least < field[k, j, i, 0] and abs(jz - z) <= limits.max_step_height):
                         continue
                     way = _way(raster, limits, ix, iy, z, i, j, jz, distance, hop) * max(dearer, field[k, j, i, 1])
                     if cost + way < field[k, j, i, 0]:
@@ -198,7 +198,7 @@ def _find_border(limits: Records, field: Array, border: NDArray[np.bool_]) -> No
                     for di in range(-1, 2):
                         if 0 <= j + dj < ny and 0 <= i + di < nx:
                             for k in range(floors):
-                                if abs(field[k, j + dj, i + di, 2] - z) <= limits.height_change:
+                                if abs(field[k, j + dj, i + di, 2] - z) <= limits.max_step_height:
                                     joined += 1
                                     break
                 border[(floor * ny + j) * nx + i] = joined < 9

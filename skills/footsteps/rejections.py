@@ -50,6 +50,14 @@ def most_frequent(rejections: tuple[tuple[str, int], ...]) -> str:
 
 
 def in_percent(rejections: tuple[tuple[str, int], ...]) -> tuple[tuple[str, float], ...]:
-    """Each reason's share of all rejected edges [%]."""
-    total = sum(count for _, count in rejections)
-    return tuple((reason, 100.0 * count / total) for reason, count in rejections)
+    """Each reason's share of the rejected edges [%]; places that no step of that size reaches are no edges."""
+    edges = [(reason, count) for reason, count in rejections if reason not in _LEVEL]
+    total = sum(count for _, count in edges)
+    return tuple((reason, 100.0 * count / total) for reason, count in edges)
+
+
+def sizes_in_percent(rejections: tuple[tuple[str, int], ...]) -> tuple[tuple[str, float], ...]:
+    """Each reason's share of the places around the stance feet that are no edges [%]."""
+    places = [(reason, count) for reason, count in rejections if reason in _LEVEL]
+    total = sum(count for _, count in places)
+    return tuple((reason, 100.0 * count / total) for reason, count in places)

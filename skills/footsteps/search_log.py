@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skills.footsteps.footstep import Side
 from skills.footsteps.footstep_lattice import FootstepLattice
-from skills.footsteps.search_space import SearchSpace
+from skills.footsteps.search_space import EDGE_LOG, EXPANDED, OPENED, SearchSpace
 from skills.geometry.pose import Array, readonly
 
 
@@ -27,6 +28,8 @@ class SearchLog:
         turn: angle between two headings [rad].
         edges: `EDGE_LOG`s in the order in which they were looked at.
     """
+
+    LAYOUT: ClassVar[np.dtype[np.void]] = EDGE_LOG
 
     first_side: Side
     shape: tuple[int, int, int, int]
@@ -46,6 +49,16 @@ class SearchLog:
             first_side, lattice.shape, lattice.start, lattice.anchor_world, lattice.yaw, lattice.spacing, lattice.turn,
             edges,
         )  # fmt: skip
+
+    @property
+    def expanded(self) -> NDArray[np.bool_]:
+        """Which rows tell that their node was expanded, (N,)."""
+        return self.edges["reason"] == EXPANDED
+
+    @property
+    def opened(self) -> NDArray[np.bool_]:
+        """Which rows tell that a step was allowed, and its node opened, (N,); all others were rejected."""
+        return self.edges["reason"] == OPENED
 
     def places(self, nodes: NDArray[np.int32]) -> tuple[Array, NDArray[np.bool_]]:
         """Where nodes are, (N, 3) rows of x, y [m], yaw [rad] in the world, and which are of the left foot, (N,).

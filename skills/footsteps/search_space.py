@@ -21,7 +21,7 @@ STEP_LIMITS = np.dtype(
         (name, np.float64)
         for name in (
             *("half_length", "half_width", "reach", "reach_up", "reach_up_height", "reach_down", "reach_down_height"),
-            *("back_reach", "minimum_width", "ideal_width", "maximum_width", "sole_gap", "height_change"),
+            *("back_reach", "minimum_width", "ideal_width", "maximum_width", "sole_gap", "max_step_height"),
             *("inward_yaw", "outward_yaw", "uphill_drop", "uphill_tangent", "in_place", "swing_reach"),
             *("swing_height_change",),
             *("body_width", "body_depth", "body_base", "body_top", "step_over"),

@@ -40,9 +40,9 @@ def step_cost(
     rise = ground.z - stand.z
     reach = np.hypot(length, width - limits.ideal_width)
     moved = np.hypot(x - stand.swing_x, y - stand.swing_y)
-    if rise > limits.height_change + ROUNDING:
+    if rise > limits.max_step_height + ROUNDING:
         return -float(TOO_HIGH)
-    if rise < -limits.height_change - ROUNDING:
+    if rise < -limits.max_step_height - ROUNDING:
         return -float(TOO_LOW)
     if rise > limits.reach_up_height + ROUNDING and reach > limits.reach_up + ROUNDING:
         return -float(FAR_UP)

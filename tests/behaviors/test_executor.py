@@ -151,3 +151,13 @@ def test_the_hash_made_beside_a_computation_is_that_of_the_result(executor: Exec
     assert executor.deliver(0.1) == (job, changing, without)
     assert job.digest == digest((1.0, "x"))[0]
     assert changing.digest is None and without.digest is None
+
+
+def test_an_alarm_rings_in_realtime_alone():
+    lockstep, realtime = Executor(ExecutorMode.LOCKSTEP), Executor(ExecutorMode.REALTIME)
+    assert lockstep.alarm(0.0) is None
+    rings, silent = realtime.alarm(-1.0), realtime.alarm(1e6)
+    assert rings is not None and rings()
+    assert silent is not None and not silent()
+    for executor in (lockstep, realtime):
+        executor.shutdown()

@@ -9,9 +9,10 @@ import pytest
 import lookstep
 from behaviors.leaves import plan_steps
 from lookstep.options import RunOptions
+from lookstep.plan_log import read_plan
 from lookstep.summary import Outcome, Summary
 from lookstep.walk import walk as run_walk
-from skills.footsteps import FootstepPlan
+from skills.footsteps import FootstepPlan, plan_on_request
 from skills.geometry import Pose
 
 SMALL_CAMERA = ("camera.resolution=0.3125",)
@@ -89,6 +90,18 @@ def test_recording_changes_nothing_and_the_summary_lies_beside_it(tmp_path):
     assert table["outcome"] == "timeout"
     lines = (tmp_path / "out" / "trace.jsonl").read_text().splitlines()
     assert json.loads(lines[-1])["hash"] == plain.trace_hash
+
+
+def test_every_plan_of_a_run_is_logged_and_the_run_is_the_same(tmp_path):
+    plain = walk("rough", seed=4, time_limit=4.0)
+    logged = walk("rough", seed=4, time_limit=4.0, plans=tmp_path / "plans")
+    assert plain.trace_hash == logged.trace_hash
+    files = sorted((tmp_path / "plans").iterdir())
+    assert [file.name for file in files] == [f"{i:04d}.plan" for i in range(logged.plan.count)]
+    for plan in map(read_plan, files):
+        assert plan_on_request(plan.request).steps[0].T_world_sole.p.tobytes() == (
+            plan.plan.steps[0].T_world_sole.p.tobytes()
+        )
 
 
 def test_operator_who_interrupts_still_gets_the_figures(tmp_path):

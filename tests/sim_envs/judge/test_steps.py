@@ -92,7 +92,7 @@ def test_judgement_holds_the_figures_of_the_step():
     assert judged.support_fraction == 1.0
     assert judged.tilt == 0.0
     assert judged.length == pytest.approx(np.hypot(0.4, 0.24))
-    assert judged.height_change == pytest.approx(0.1)
+    assert judged.max_step_height == pytest.approx(0.1)
     assert not judged.reactive
 
 

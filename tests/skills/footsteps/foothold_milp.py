@@ -146,7 +146,7 @@ class FootholdMilp:
             heights |= {at - block + 5 + i: -stone.z for i, stone in enumerate(self.stones)}
         else:
             before = float(stance.sole(first_side.opposite).p[2])
-        program.require(heights, before - p.height_change, before + p.height_change)
+        program.require(heights, before - p.max_step_height, before + p.max_step_height)
         for direction in (-1.0, 1.0):
             terms = {i: direction * w for i, w in heights.items()}
             program.require({**terms, at + 2: -1.0}, -np.inf, direction * before)

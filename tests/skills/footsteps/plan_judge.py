@@ -107,7 +107,7 @@ class PlanJudge:
             f"reach down {reach:.3f}": rise < -p.reach_down_height and reach > p.reach_down + ROUNDING,
             f"back {length:.3f}": length < -p.back_reach - ROUNDING,
             f"width {width:.3f}": not p.minimum_width - ROUNDING <= width <= p.maximum_width + ROUNDING,
-            f"rise {rise:.3f}": abs(rise) > p.height_change + ROUNDING,
+            f"rise {rise:.3f}": abs(rise) > p.max_step_height + ROUNDING,
             f"outward yaw {outward:.3f}": not -p.inward_yaw - 1e-6 <= outward <= p.outward_yaw + 1e-6,
             f"drop {rise:.3f} off an uphill foot": rise < -p.uphill_drop and uphill > p.uphill_slope + 1e-6,
             "swing too long": math.hypot(*swing[:2]) > p.swing_reach + ROUNDING,

@@ -71,7 +71,7 @@ def test_stairs_that_wind_over_themselves_are_climbed():
     plan = way(regions, (-1.6, -1.3, 0.0, 0.0), (*top.p, top.yaw))
     assert plan.outcome is PlanOutcome.GOAL_REACHED, plan.reason
     assert places(plan)[-1, 2] == pytest.approx(top.p[2])
-    assert np.max(np.abs(np.diff(places(plan)[:, 2]))) <= FOOTSTEPS.height_change
+    assert np.max(np.abs(np.diff(places(plan)[:, 2]))) <= FOOTSTEPS.max_step_height
 
 
 def test_the_goal_is_on_the_floor_that_its_height_tells():

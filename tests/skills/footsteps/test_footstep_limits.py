@@ -51,7 +51,7 @@ def test_every_planned_step_keeps_the_limits_on_the_pose_that_is_returned(taken:
         assert reach <= p.reach + ROUNDING
         assert length >= -p.back_reach - ROUNDING
         assert p.minimum_width - ROUNDING <= width <= p.maximum_width + ROUNDING
-        assert abs(rise) <= p.height_change
+        assert abs(rise) <= p.max_step_height
         assert -p.inward_yaw - ROUNDING <= outward <= p.outward_yaw + ROUNDING
         if rise > p.reach_up_height:
             assert reach <= p.reach_up + ROUNDING

@@ -114,7 +114,7 @@ class Oracle:
         width = abs(math.cos(yaw) * offset[1] - math.sin(yaw) * offset[0])
         reach, rise = math.hypot(length, width - p.ideal_width), offset[2]
         if (
-            abs(rise) > p.height_change
+            abs(rise) > p.max_step_height
             or (rise > p.reach_up_height and reach > p.reach_up)
             or (rise < -p.reach_down_height and reach > p.reach_down)
             or (rise < -p.uphill_drop and math.asin(stance.R[2, 0]) > p.uphill_slope)
