@@ -12,7 +12,7 @@ from __future__ import annotations
 import time as wall
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any
 
@@ -64,13 +64,18 @@ class JobRecord:
     compute_seconds: float | None
     cpu_seconds: float | None
     outcome: JobOutcome
-    arguments: tuple[Any, ...] = field(repr=False)
-    result: Any = field(repr=False)
+    arguments: tuple[Any, ...] = field(default=(), repr=False)
+    result: Any = field(default=None, repr=False)
 
     @property
     def margin(self) -> float | None:
         """Budget less compute time [s]."""
         return None if self.compute_seconds is None else self.budget - self.compute_seconds
+
+    @property
+    def bare(self) -> JobRecord:
+        """The account without arguments and result, which may be images: for those who keep it."""
+        return replace(self, arguments=(), result=None)
 
     @property
     def missed(self) -> bool:

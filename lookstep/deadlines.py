@@ -52,7 +52,7 @@ class DeadlineAccounts:
     def take(self, jobs: Iterable[JobRecord]) -> None:
         """Take note of computations that have ended."""
         for job in jobs:
-            self._jobs.setdefault(job.path, []).append(job)
+            self._jobs.setdefault(job.path, []).append(job.bare)
 
     def report(self) -> tuple[LeafDeadlines, ...]:
         """One account a leaf, by path."""
