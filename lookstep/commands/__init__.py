@@ -3,6 +3,7 @@
 from lookstep.commands import (
     bench,
     check,
+    convert,
     demo,
     diff,
     leaves,
@@ -25,6 +26,7 @@ COMMANDS: tuple[Command, ...] = (
     tree,
     leaves,
     schema,
+    convert,
     replay,
     diff,
     why,

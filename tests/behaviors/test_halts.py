@@ -51,26 +51,24 @@ def random_tree(chance: random.Random) -> TreeSpec:
     """A tree of all kinds of nodes that passes the checks."""
     while True:
         try:
-            return parse_tree(
-                f"{{tree: t, ports: {{in: {{n: float}}}}, root: {{loop_forever: {{child: {_node(chance, 4)}}}}}}}",
-                counted,
-            )
+            root = f"{{loop_forever: {{child: {random_node(chance, 4, leaf='Counted')}}}}}"
+            return parse_tree(f"{{tree: t, ports: {{in: {{n: float}}}}, root: {root}}}", counted)
         except YamlError as error:
             assert all("can never be" in problem.message for problem in error.problems)
 
 
-def _node(chance: random.Random, depth: int) -> str:
+def random_node(chance: random.Random, depth: int, *, key: str = "n", leaf: str = "Square") -> str:
+    """A node as a tree file writes it; computing leaves read a key."""
     if depth == 0 or chance.random() < 0.2:
         latency = chance.choice([0.0, 0.02, 0.1, 0.3])
         says = "".join(chance.choice("SFRRR") for _ in range(4))
-        return chance.choice(
-            [f"{{Scripted: {{says: {says}}}}}", f"{{Counted: {{in: {{number: n}}, latency: {latency}}}}}"]
-        )
+        computing = f"{{{leaf}: {{in: {{number: {key}}}, latency: {latency}}}}}"
+        return chance.choice([f"{{Scripted: {{says: {says}}}}}", computing])
+    below = [random_node(chance, depth - 1, key=key, leaf=leaf) for _ in range(chance.randint(1, 3))]
     if chance.random() < 0.4:
         kind, options = chance.choice(list(DECORATORS.items()))
-        return f"{{{kind}: {{{options}child: {_node(chance, depth - 1)}}}}}"
-    children = ", ".join(_node(chance, depth - 1) for _ in range(chance.randint(1, 3)))
-    return f"{{{chance.choice(COMPOSITES)}: [{children}]}}"
+        return f"{{{kind}: {{{options}child: {below[0]}}}}}"
+    return f"{{{chance.choice(COMPOSITES)}: [{', '.join(below)}]}}"
 
 
 def test_a_thousand_random_halts_stop_each_running_leaf_once_and_leave_no_job():
