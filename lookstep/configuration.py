@@ -15,12 +15,18 @@ from typing import Any, get_type_hints
 from sim_envs.judge import JudgeParameters
 from sim_envs.robot import RobotDescription
 from sim_envs.sensors import DepthCameraParameters, DepthNoise, LidarNoise, LidarParameters
-from sim_envs.worlds import FallParameters, KinematicWorldParameters, StateDriftParameters
+from sim_envs.worlds import (
+    FallParameters,
+    KinematicParameters,
+    PhysicsParameters,
+    StateDriftParameters,
+    WorldParameters,
+)
 from skills.body_path import SubGoalParameters
 from skills.footsteps import FootstepParameters, TerrainParameters
 from skills.height_map import HeightMapParameters
 from skills.regions import MemoryParameters, RegionParameters, RegistrationParameters
-from skills.walking import WalkingParameters
+from skills.walking import SwingParameters, WalkerParameters, WalkingParameters, WholeBodyParameters
 from strict_yaml import (
     Entry,
     Kind,
@@ -51,11 +57,15 @@ class Configuration:
     noise: DepthNoise
     lidar: LidarParameters
     lidar_noise: LidarNoise
-    world: KinematicWorldParameters
+    world: WorldParameters
+    physics: PhysicsParameters
+    kinematic: KinematicParameters
     drift: StateDriftParameters
     falls: FallParameters
     judge: JudgeParameters
     walking: WalkingParameters
+    swing: SwingParameters
+    whole_body: WholeBodyParameters
     regions: RegionParameters
     region_memory: MemoryParameters
     height_map: HeightMapParameters
@@ -63,6 +73,11 @@ class Configuration:
     sub_goal: SubGoalParameters
     footsteps: FootstepParameters
     terrain: TerrainParameters
+
+    @property
+    def walker(self) -> WalkerParameters:
+        """All settings of the walking controller."""
+        return WalkerParameters(walking=self.walking, swing=self.swing, whole_body=self.whole_body)
 
     def by_subject(self) -> dict[str, Any]:
         """The typed parameters by the name of their subject."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from behaviors import JobRecord, LogLine, Tree
-from sim_envs.worlds import KinematicWorld
+from sim_envs.worlds import SimulatedWorld
 from skills.walking import ControlSample, RobotState, StepEvent, WalkingStatus
 
 
@@ -27,7 +27,7 @@ class Moment:
     """
 
     time: float
-    world: KinematicWorld
+    world: SimulatedWorld
     tree: Tree
     state: RobotState
     status: WalkingStatus

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-WORLDS = ("kinematic",)
+WORLDS = ("physics", "kinematic")
 EXECUTORS = ("lockstep", "realtime")
 
 
@@ -34,7 +34,7 @@ class RunOptions:
     tree: str = "look_and_step"
     course: str = "rough"
     seed: int = 0
-    world: str = "kinematic"
+    world: str = "physics"
     executor: str = "lockstep"
     speed: float | None = None
     goal: tuple[float, float, float] | None = None

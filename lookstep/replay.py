@@ -86,7 +86,7 @@ def replay(folder: Path, options: ReplayOptions, progress: Progress = lambda don
         spec = load_tree(recorded.tree, texts=recorded.sources)
     else:
         spec = load_tree(tree_path(options.tree))
-    world = build_world(recorded.course, recorded.configuration, recorded.options.seed)
+    world = build_world(recorded.course, recorded.configuration, recorded.options.world, recorded.options.seed)
     robot = FollowingRobot(world)
     settings = {**recorded.nodes}
     for path, values in assignments.nodes.items():

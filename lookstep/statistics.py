@@ -22,7 +22,7 @@ from sim_envs.judge import (
     judge_step,
     support_fraction,
 )
-from sim_envs.worlds import KinematicWorld
+from sim_envs.worlds import SimulatedWorld
 from skills.footsteps import FootstepPlan, PlanOutcome
 from skills.geometry import Array, Pose, contains_points
 from skills.regions import PlanarRegions, RegionExtraction
@@ -37,7 +37,7 @@ _FRAMES_KEPT = 30
 class Statistics:
     """An observer that ends up with the figures of the run."""
 
-    def __init__(self, world: KinematicWorld, configuration: Configuration) -> None:
+    def __init__(self, world: SimulatedWorld, configuration: Configuration) -> None:
         self._course = world.course
         self._sole_size = (configuration.robot.sole_length, configuration.robot.sole_width)
         self._corners_sole = configuration.robot.sole_corners_sole

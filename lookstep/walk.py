@@ -29,7 +29,7 @@ from lookstep.trees import tree_path
 from lookstep.warm_up import warm_up
 from lookstep.world import build_world
 from sim_envs.courses import Course, CourseError, load_course
-from sim_envs.worlds import KinematicWorld
+from sim_envs.worlds import SimulatedWorld
 from skills.body_path import Goal
 from skills.parameters import ParameterError
 from skills.walking import WalkingPhase
@@ -54,7 +54,7 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
     course = _course(options, assignments.course)
     faults = () if options.faults is None else load_faults(options.faults, course)
     course = faulty_course(course, faults)
-    world = build_world(course, configuration, options.seed)
+    world = build_world(course, configuration, options.world, options.seed)
     tree = _tree(spec, faulty_robot(world, faults), configuration, assignments, options)
     break_leaves(tree, faults)
     # From here on the input is known to be good.
@@ -110,7 +110,7 @@ class _Ending:
 
 
 def _loop(
-    world: KinematicWorld,
+    world: SimulatedWorld,
     tree: Tree,
     watching: list[Observer],
     options: RunOptions,
@@ -140,7 +140,7 @@ def _loop(
     return _Ending(outcome, reason, pace.elapsed)
 
 
-def _moment(world: KinematicWorld, tree: Tree) -> Moment:
+def _moment(world: SimulatedWorld, tree: Tree) -> Moment:
     return Moment(
         time=world.time,
         world=world,

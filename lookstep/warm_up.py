@@ -23,7 +23,7 @@ from skills.regions import MapParameters, PlanarRegion, PlanarRegions, RegionMem
 def warm_up(configuration: Configuration) -> None:
     """Run each kernel once with the types that a walk uses."""
     course = load_course("flat")
-    world = build_world(course, configuration)
+    world = build_world(course, configuration, "kinematic")
     image, scan = world.depth_image(), world.lidar_scan()
     assert image is not None and scan is not None, "the world takes its first frames when it is made"
     stance = world.status().imminent_stance

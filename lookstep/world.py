@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from lookstep.configuration import Configuration
 from sim_envs.courses import Course
-from sim_envs.worlds import KinematicWorld
+from sim_envs.worlds import SimulatedWorld, WorldKind
 
 
-def build_world(course: Course, configuration: Configuration, seed: int = 0) -> KinematicWorld:
-    """Put the configured robot at the start of a course; the seed is that of the sensor noise."""
-    return KinematicWorld(
+def build_world(course: Course, configuration: Configuration, kind: str, seed: int = 0) -> SimulatedWorld:
+    """Put the configured robot at the start of a course; the seed is that of all noise."""
+    return SimulatedWorld(
         course,
+        WorldKind(kind),
         seed=seed,
         parameters=configuration.world,
+        physics=configuration.physics,
+        kinematic=configuration.kinematic,
         robot=configuration.robot,
-        walking=configuration.walking,
+        walker=configuration.walker,
         camera=configuration.camera,
         noise=configuration.noise,
         lidar=configuration.lidar,

@@ -21,7 +21,7 @@ from lookstep.recording.blueprint import TIMELINE, default_blueprint
 from lookstep.recording.columns import Columns
 from lookstep.recording.perception import PerceptionViews
 from sim_envs.robot import RobotDescription
-from sim_envs.worlds import KinematicWorld
+from sim_envs.worlds import SimulatedWorld
 from skills.body_path import BodyPath, Goal, SubGoal
 from skills.footsteps import FootstepPlan, Side
 from skills.geometry import Pose
@@ -59,7 +59,7 @@ class Recording:
     """
 
     def __init__(
-        self, path: Path, world: KinematicWorld, tree: Tree, robot: RobotDescription, about: str, seed: int
+        self, path: Path, world: SimulatedWorld, tree: Tree, robot: RobotDescription, about: str, seed: int
     ) -> None:
         course = world.course
         self._stream = rr.RecordingStream(_APPLICATION, recording_id=f"{course.name}-{seed}")
@@ -120,7 +120,7 @@ class Recording:
         ):
             self._stream.log(entity, rr.SeriesLines(colors=[color], names=[name], widths=[1.5]), static=True)
 
-    def _log_links(self, world: KinematicWorld) -> list[tuple[str, int]]:
+    def _log_links(self, world: SimulatedWorld) -> list[tuple[str, int]]:
         """Log the shape of each link once; returns entity and body id of each."""
         links = []
         for body, mesh in scene.robot_meshes(world.model):

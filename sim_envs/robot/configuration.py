@@ -10,6 +10,7 @@ import numpy as np
 from skills.geometry.pose import Array, Pose
 
 _XYZW_TO_WXYZ = np.array([0, 1, 2, 6, 3, 4, 5])
+_WXYZ_TO_XYZW = np.array([0, 1, 2, 4, 5, 6, 3])
 
 
 def qpos_from_configuration(q: Array) -> Array:
@@ -17,6 +18,20 @@ def qpos_from_configuration(q: Array) -> Array:
     qpos = np.array(q, dtype=np.float64)
     qpos[:7] = q[_XYZW_TO_WXYZ]
     return qpos
+
+
+def configuration_from_qpos(qpos: Array) -> Array:
+    """Pinocchio's configuration (7 + n) of MuJoCo's qpos (7 + n)."""
+    q = np.array(qpos, dtype=np.float64)
+    q[:7] = qpos[_WXYZ_TO_XYZW]
+    return q
+
+
+def velocity_from_qvel(q: Array, qvel: Array) -> Array:
+    """Pinocchio's velocity (6 + n) at a pinocchio configuration (7 + n) of MuJoCo's qvel (6 + n)."""
+    v = np.array(qvel, dtype=np.float64)
+    v[:3] = pelvis_pose(q).R.T @ qvel[:3]
+    return v
 
 
 def qvel_from_velocity(q: Array, v: Array) -> Array:

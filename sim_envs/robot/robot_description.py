@@ -26,6 +26,7 @@ class RobotDescription:
     )
     sole_length: float = parameter(0.26, unit="m", meaning="sole along x", minimum=0.05, maximum=0.5)
     sole_width: float = parameter(0.138, unit="m", meaning="sole along y", minimum=0.03, maximum=0.3)
+    torso_body: str = parameter("torso", unit="1", meaning="body that is kept upright")
     camera_body: str = parameter("torso", unit="1", meaning="body that carries the depth camera")
     camera_position: tuple[float, float, float] = parameter(
         (0.14, 0.0, 0.03), unit="m", meaning="optical centre in that body's frame", minimum=-2.0, maximum=2.0

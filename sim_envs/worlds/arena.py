@@ -20,6 +20,9 @@ class CourseArena(composer.Arena):
         self._mjcf_root = mjcf.RootElement(model="course")
         root: Any = self._mjcf_root
         root.compiler.angle = "radian"
+        # Elliptic friction cones and a stiff tangential direction: feet that push off must not creep.
+        root.option.cone, root.option.impratio = "elliptic", 10
+        root.option.integrator, root.option.iterations = "implicitfast", 20
         self._bodies = {box.name: self._add_box(box) for box in course.boxes}
 
     def _add_box(self, box: Box) -> Any:

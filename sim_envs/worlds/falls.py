@@ -14,9 +14,8 @@ from sim_envs.robot import RobotDescription
 from skills.footsteps.footstep import Side
 from skills.geometry.pose import Array, Pose
 from skills.parameters import parameter, parameters
-from skills.walking.kinematic_walker import WalkerOutput
 from skills.walking.support_polygon import SupportPolygon
-from skills.walking.walking_state import WalkingPhase, WalkingStatus
+from skills.walking.walking_state import RobotState, WalkingPhase, WalkingStatus
 
 _SAMPLES_ALONG, _SAMPLES_ACROSS = 9, 5  # about every 3 cm of the sole
 
@@ -53,25 +52,25 @@ class FallDetector:
         self._soles: tuple[Pose, ...] = ()
         self._polygon: SupportPolygon | None = None
 
-    def check(self, output: WalkerOutput, status: WalkingStatus, ground: Ground) -> str:
+    def check(self, state: RobotState, status: WalkingStatus, ground: Ground) -> str:
         """Why the robot has fallen, in one sentence; empty while it has not.
 
         Args:
-            output: what the robot does now, in the true world.
+            state: of the robot, in the true world.
             status: what the walking controller does, its steps in the true world.
             ground: the true ground as it is now.
         """
         swing = status.current_step.side if status.phase is WalkingPhase.SWING and status.current_step else None
         return (
-            self._check_dcm(output, status, swing)
-            or self._check_swing(output, swing, ground)
-            or self._check_support(output, status, swing, ground)
+            self._check_dcm(state, status, swing)
+            or self._check_swing(state, swing, ground)
+            or self._check_support(state, status, swing, ground)
         )
 
-    def _check_dcm(self, output: WalkerOutput, status: WalkingStatus, swing: Side | None) -> str:
-        soles = tuple(output.stance.sole(side) for side in Side if side is not swing)
+    def _check_dcm(self, state: RobotState, status: WalkingStatus, swing: Side | None) -> str:
+        soles = tuple(state.stance.sole(side) for side in Side if side is not swing)
         soles += tuple(status.imminent_stance.sole(side) for side in Side)
-        outside = self._support_polygon(soles).distance(output.dcm_world)
+        outside = self._support_polygon(soles).distance(state.dcm_world)
         if outside <= self._parameters.dcm_margin:
             return ""
         return f"the DCM is {100 * outside:.0f} cm outside the support polygon"
@@ -84,11 +83,11 @@ class FallDetector:
             self._soles, self._polygon = soles, SupportPolygon(corners)
         return self._polygon
 
-    def _check_swing(self, output: WalkerOutput, swing: Side | None, ground: Ground) -> str:
+    def _check_swing(self, state: RobotState, swing: Side | None, ground: Ground) -> str:
         if swing is None:
             return ""
         limit = self._parameters.swing_penetration
-        samples = output.stance.sole(swing) @ self._samples_sole
+        samples = state.stance.sole(swing) @ self._samples_sole
         # No point is deeper inside a box than it is below the ground; few are below, and only those cost time.
         below = samples[ground.ground_height(samples[:, :2]) - samples[:, 2] > limit]
         depths = ground.penetration(below)
@@ -98,19 +97,19 @@ class FallDetector:
         x, y = below[deepest, :2]
         return f"the {swing.value} sole swung {100 * depths[deepest]:.0f} cm into the ground at ({x:.2f}, {y:.2f})"
 
-    def _check_support(self, output: WalkerOutput, status: WalkingStatus, swing: Side | None, ground: Ground) -> str:
+    def _check_support(self, state: RobotState, status: WalkingStatus, swing: Side | None, ground: Ground) -> str:
         """Look once in the middle of each swing, and now and then while standing."""
         if swing is not None and status.current_step is not None:
             due = status.phase_elapsed >= 0.5 * status.phase_duration
             look = (status.phase, status.current_step.sequence_id)
         else:
             due = status.phase is WalkingPhase.STANDING
-            look = (status.phase, int(output.time / self._parameters.standing_check_period))
+            look = (status.phase, int(state.time / self._parameters.standing_check_period))
         if not due or look == self._looked_at_support:
             return ""
         self._looked_at_support = look
         for side in Side:
-            share = 1.0 if side is swing else self._supported_share(output.stance.sole(side), ground)
+            share = 1.0 if side is swing else self._supported_share(state.stance.sole(side), ground)
             if share < self._parameters.support_share:
                 return f"only {100 * share:.0f} % of the {side.value} sole stood on ground"
         return ""

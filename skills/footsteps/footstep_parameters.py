@@ -17,8 +17,8 @@ class FootstepParameters:
 
     sole_length: float = parameter(0.26, unit="m", meaning="length of the sole", minimum=0.1, maximum=0.5)
     sole_width: float = parameter(0.138, unit="m", meaning="width of the sole", minimum=0.05, maximum=0.3)
-    swing_duration: float = parameter(1.2, unit="s", meaning="time of a step in the air", minimum=0.3, maximum=5.0)
-    transfer_duration: float = parameter(0.8, unit="s", meaning="double support before it", minimum=0.05, maximum=5.0)
+    swing_duration: float = parameter(0.8, unit="s", meaning="time of a step in the air", minimum=0.3, maximum=5.0)
+    transfer_duration: float = parameter(0.3, unit="s", meaning="double support before it", minimum=0.05, maximum=5.0)
 
     reach: float = parameter(0.52, unit="m", meaning="longest step", minimum=0.1, maximum=1.0)
     reach_up: float = parameter(0.45, unit="m", meaning="longest step up", minimum=0.1, maximum=1.0)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 
 def readonly(values: ArrayLike, shape: tuple[int | None, ...] | None = None) -> Array:

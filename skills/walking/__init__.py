@@ -1,7 +1,8 @@
 """Walking over footsteps: balance, swing and joint motion."""
 
-from skills.walking.kinematic_walker import KinematicWalker, WalkerOutput
 from skills.walking.robot_model import RobotModel
+from skills.walking.swing_parameters import SwingParameters
+from skills.walking.walker import BodyMeasurement, Walker, WalkerParameters
 from skills.walking.walking_parameters import WalkingParameters
 from skills.walking.walking_state import (
     ControlSample,
@@ -11,16 +12,20 @@ from skills.walking.walking_state import (
     WalkingPhase,
     WalkingStatus,
 )
+from skills.walking.whole_body_parameters import WholeBodyParameters
 
 __all__ = [
+    "BodyMeasurement",
     "ControlSample",
-    "KinematicWalker",
     "RobotModel",
     "RobotState",
     "StepEvent",
     "StepEventKind",
-    "WalkerOutput",
+    "SwingParameters",
+    "Walker",
+    "WalkerParameters",
     "WalkingParameters",
     "WalkingPhase",
     "WalkingStatus",
+    "WholeBodyParameters",
 ]

@@ -23,7 +23,9 @@ from skills.walking.walking_parameters import WalkingParameters
 
 _SMOOTHING = np.array([1.0, 4.0, 6.0, 4.0, 1.0]) / 16.0
 _SAMPLES_PER_KNOT = 2
-_KEPT_OFFSET = 0.5
+# Shares of an offset from the target that stay after each knot: a body too high for its legs must come down, one that
+# is low has time, and rising fast costs balance.
+_KEPT_ABOVE, _KEPT_BELOW = 0.5, 0.8
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,7 +64,8 @@ def plan_height(
     target = np.convolve(np.pad(target, 2, mode="edge"), _SMOOTHING, mode="valid")
     first = controls_of_motion(state.com[2:], np.array([state.velocity]), np.array([state.acceleration]), spacing)
     # Knots -1, 0 and 1 are the present motion; the distance of knot 1 from its target fades over those behind.
-    fading = (first[2, 0] - target[1]) * _KEPT_OFFSET ** np.arange(1, count)
+    offset = first[2, 0] - target[1]
+    fading = offset * (_KEPT_BELOW if offset < 0.0 else _KEPT_ABOVE) ** np.arange(1, count)
     rest = np.append(target[2:] + fading, target[-1:])
     return UniformSpline(0.0, spacing, np.append(first[:, 0], rest)[: count + 3, None])
 

@@ -3,8 +3,7 @@
 Pelvis and legs have as many freedoms as CoM, pelvis orientation and two soles have coordinates; arms and back keep
 their posture. Newton steps on the tangent space, damped by their own error (Sugihara, 2011), converge in two or three
 iterations from the configuration before. Where a leg cannot reach, joints stay at their limits and the weights decide:
-soles first, then the CoM in the plane, then its height and the pelvis orientation, last the orientation of a foot in
-the air.
+soles first, then the CoM in the plane, last its height and the pelvis orientation.
 """
 
 from __future__ import annotations
@@ -21,7 +20,6 @@ from skills.walking.robot_model import RobotModel
 # Rows: CoM x, y, z; pelvis orientation 3; then position 3 and orientation 3 of the left and of the right sole.
 _WEIGHTS = np.array([0.3, 0.3, 0.02] + [0.02] * 3 + ([1.0] * 3 + [0.3] * 3) * 2)
 _ORIENTATION_ROWS = {Side.LEFT: slice(9, 12), Side.RIGHT: slice(15, 18)}
-_LEAST_ORIENTATION_WEIGHT = 0.005
 _DAMPING = 0.01
 _LEAST_DAMPING = 1e-10
 _LONGEST_STEP = 0.3
@@ -66,14 +64,6 @@ class InverseKinematics:
             knee = 6 * index + 3
             self._lower[knee] = max(self._lower[knee], model.legs[side].knee_offset + _LEAST_KNEE_BEND)
         self._upper = model.upper_limits[legs]
-        self._weights = _WEIGHTS.copy()
-
-    def free_orientation(self, side: Side | None, freedom: float) -> None:
-        """Let the sole of a foot in the air tilt where its leg needs it; 0 is as strict as on the ground, 1 is free."""
-        self._weights[:] = _WEIGHTS
-        if side is not None:
-            strict = float(_WEIGHTS[_ORIENTATION_ROWS[side]][0])
-            self._weights[_ORIENTATION_ROWS[side]] = strict * (_LEAST_ORIENTATION_WEIGHT / strict) ** freedom
 
     def solve(
         self, q: Array, com_world: Array, R_world_pelvis: Array, stance: Stance, iterations: int, tolerance: float
@@ -94,7 +84,7 @@ class InverseKinematics:
             q = self._step(q, error)
             error = self._error(q, com_world, R_world_pelvis, stance)
             made += 1
-        unweighted = error / self._weights
+        unweighted = error / _WEIGHTS
         return IkSolution(
             q=q,
             left_error=float(np.linalg.norm(unweighted[6:9])),
@@ -118,7 +108,7 @@ class InverseKinematics:
             sole = pin.updateFramePlacement(self._pin, data, self._model.sole_frames[side])
             error[row : row + 3] = target.p - sole.translation
             error[row + 3 : row + 6] = pin.log3(target.R @ sole.rotation.T)
-        return error * self._weights
+        return error * _WEIGHTS
 
     def _step(self, q: Array, error: Array) -> Array:
         """One Newton step from the configuration that the data was computed at, joints kept within limits."""
@@ -155,5 +145,5 @@ class InverseKinematics:
             frame = self._model.sole_frames[side]
             full = pin.getFrameJacobian(self._pin, self._data, frame, pin.LOCAL_WORLD_ALIGNED)
             jacobian[row : row + 6] = full[:, self._columns]
-        jacobian *= self._weights[:, None]
+        jacobian *= _WEIGHTS[:, None]
         return jacobian

@@ -15,6 +15,7 @@ import numpy as np
 from skills.footsteps.footstep import Footstep, Side, Stance
 from skills.geometry.pose import Array, Pose
 from skills.walking.heel_lift import HeelLift, pitched_about_toe
+from skills.walking.swing_parameters import SwingParameters
 from skills.walking.swing_trajectory import SwingTrajectory
 from skills.walking.walking_parameters import WalkingParameters
 
@@ -69,11 +70,15 @@ def transfer_phase(
     step: Footstep,
     elapsed: float,
     remaining: float,
-    heel: HeelLift | None,
+    duration: float,
+    toe: float,
     parameters: WalkingParameters,
 ) -> PlannedPhase:
-    """The double support before a step."""
+    """The double support before a step; its heel may lift about the toe line."""
     carrying = stance.sole(step.side.opposite)
+    start = parameters.heel_lift_start * duration
+    lift = heel_lift(duration, parameters)
+    heel = HeelLift(stance.sole(step.side), toe, lift, start, max(duration - start, 1e-6))
     return PlannedPhase(
         stance=stance,
         elapsed=elapsed,
@@ -88,7 +93,12 @@ def transfer_phase(
 
 
 def swing_phase(
-    stance: Stance, step: Footstep, swing: SwingTrajectory | None, elapsed: float, parameters: WalkingParameters
+    stance: Stance,
+    step: Footstep,
+    swing: SwingTrajectory | None,
+    elapsed: float,
+    remaining: float,
+    parameters: WalkingParameters,
 ) -> PlannedPhase:
     """The single support of a step."""
     carrying = stance.sole(step.side.opposite)
@@ -97,7 +107,7 @@ def swing_phase(
     return PlannedPhase(
         stance=stance,
         elapsed=elapsed,
-        remaining=max(0.0, step.swing_duration - elapsed),
+        remaining=remaining,
         side=step.side,
         swing=swing,
         heel=None,
@@ -128,41 +138,42 @@ def resting_phase(
 
 def phases_of_steps(
     stance: Stance,
-    first_swing: Pose | None,
     steps: Sequence[Footstep],
     last_side: Side | None,
     toe: float,
     horizon: float,
     parameters: WalkingParameters,
+    swing_parameters: SwingParameters,
 ) -> list[PlannedPhase]:
     """The phases of steps to come, each with its transfer, until the robot rests.
 
     Args:
         stance: soles flat on the ground before the first of them.
-        first_swing: where the first step's foot lifts off, when its transfer is not part of the answer.
         steps: in order.
         last_side: foot that moved last where there are no steps.
         toe: toe line before the sole's centre [m].
         horizon: phases that start later have no swing trajectory [s].
         parameters: settings of walking.
+        swing_parameters: settings of swings.
     """
     phases: list[PlannedPhase] = []
     for step in steps:
-        if first_swing is not None:
-            lift_off, first_swing = first_swing, None
-        else:
-            start = parameters.heel_lift_start * step.transfer_duration
-            flat = stance.sole(step.side)
-            heel = HeelLift(flat, toe, parameters.heel_lift, start, step.transfer_duration - start)
-            phases.append(transfer_phase(stance, step, 0.0, step.transfer_duration, heel, parameters))
-            lift_off = pitched_about_toe(flat, toe, parameters.heel_lift)
-            horizon -= step.transfer_duration
-        swing = SwingTrajectory(lift_off, step, parameters) if horizon > 0.0 else None
-        phases.append(swing_phase(stance, step, swing, 0.0, parameters))
-        horizon -= step.swing_duration
+        transfer, swing_time = step.transfer_duration, step.swing_duration
+        phases.append(transfer_phase(stance, step, 0.0, transfer, transfer, toe, parameters))
+        horizon -= transfer
+        lift_off = pitched_about_toe(stance.sole(step.side), toe, heel_lift(transfer, parameters))
+        swing = SwingTrajectory(lift_off, step, swing_parameters) if horizon > 0.0 else None
+        phases.append(swing_phase(stance, step, swing, 0.0, swing_time, parameters))
+        horizon -= swing_time
         stance, last_side = stance.with_sole(step.side, step.T_world_sole), step.side
     phases.append(resting_phase(stance, last_side, parameters.final_transfer, parameters))
     return phases
+
+
+def heel_lift(transfer: float, parameters: WalkingParameters) -> float:
+    """Pitch that a trailing foot reaches in a transfer of a duration [rad, s]."""
+    time = (1.0 - parameters.heel_lift_start) * transfer
+    return min(parameters.heel_lift, parameters.heel_lift_rate * time)
 
 
 def cop_in_sole(T_world_sole: Pose, side: Side, forward: float, parameters: WalkingParameters) -> Array:

@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
-from skills.footsteps.footstep import Side
+from skills.footsteps.footstep import Side, Stance
 from skills.geometry.pose import Array, Pose, readonly
+from skills.walking.walking_state import RobotState
 
 _JOINTS_IN_LEG = 6
 
@@ -52,12 +53,15 @@ class RobotModel:
     Args:
         mjcf_path: MJCF file without a free joint, with the sites left_sole and right_sole.
         sole_length, sole_width: size of a sole along x and y [m].
+        torso: name of the body that is kept upright.
 
     Raises:
         ValueError: where the file has no such robot.
     """
 
-    def __init__(self, mjcf_path: str | Path, sole_length: float = 0.26, sole_width: float = 0.138) -> None:
+    def __init__(
+        self, mjcf_path: str | Path, sole_length: float = 0.26, sole_width: float = 0.138, torso: str = "torso"
+    ) -> None:
         if not Path(mjcf_path).is_file():
             raise ValueError(f"{mjcf_path}: there is no such MJCF file")
         built = pin.buildModelAndLegacyConstraintsFromMJCF(str(mjcf_path), pin.JointModelFreeFlyer(), "root")
@@ -74,6 +78,11 @@ class RobotModel:
             0.5 * np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * (sole_length, sole_width)
         )
         self.legs = {side: self._leg(side, mjcf_path) for side in Side}
+        self.torso_frame = torso
+        if not self.pin_model.existFrame(torso):
+            raise ValueError(f"{mjcf_path}: there is no body {torso!r} for the torso")
+        carried_by = self.pin_model.supports[self.pin_model.frames[self.pin_model.getFrameId(torso)].parentJoint]
+        self.back = tuple(int(joint) - 2 for joint in carried_by if joint >= 2)
 
     def neutral_configuration(self) -> Array:
         """Pelvis at the world's origin, all joints at zero, (7 + n,)."""
@@ -102,6 +111,25 @@ class RobotModel:
     def com(self, q: Array) -> Array:
         """Centre of mass in the world at a configuration, (3,) [m]."""
         return np.array(pin.centerOfMass(self.pin_model, self._data, q))
+
+    def state(self, time: float, q: Array, v: Array, omega: float) -> RobotState:
+        """What a configuration and a velocity mean, at a robot time [s] and a pendulum rate omega [1/s]."""
+        model, data = self.pin_model, self._data
+        pin.centerOfMass(model, data, q, v)
+        com = np.array(data.com[0])
+        soles = []
+        for side in Side:
+            placement = pin.updateFramePlacement(model, data, self.sole_frames[side])
+            soles.append(Pose(placement.rotation, placement.translation))
+        return RobotState(
+            time=time,
+            T_world_pelvis=Pose(data.oMi[1].rotation, q[:3]),
+            joint_positions=q[7:],
+            joint_velocities=v[6:],
+            stance=Stance(*soles),
+            com_world=com,
+            dcm_world=com + data.vcom[0] / omega,
+        )
 
     def com_jacobian(self, q: Array) -> Array:
         """Derivative of the CoM in the world by the velocity, (3, 6 + n)."""

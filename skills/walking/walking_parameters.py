@@ -30,8 +30,13 @@ class WalkingParameters:
         2.2, unit="rad", meaning="greatest knee angle planned for", minimum=1.0, maximum=3.0
     )
     heel_lift: float = parameter(0.6, unit="rad", meaning="largest pitch of a trailing foot about its toe", minimum=0.0)
+    heel_lift_rate: float = parameter(
+        1.0, unit="rad/s", meaning="how fast a heel is planned to rise", minimum=0.1, maximum=20.0
+    )
     heel_lift_start: float = parameter(0.35, unit="1", meaning="share of the transfer before heels lift", maximum=0.9)
-    heel_lift_stages: int = parameter(4, unit="1", meaning="heel lifts tried between none and the largest", minimum=1)
+    toe_off_knee: float = parameter(
+        0.5, unit="rad", meaning="trailing knee straighter than this lifts its heel", minimum=0.0, maximum=1.5
+    )
 
     cop_in: float = parameter(0.0, unit="m", meaning="CoP before the sole's centre when its swing starts")
     cop_out: float = parameter(0.02, unit="m", meaning="CoP before the sole's centre when its swing ends")
@@ -43,30 +48,31 @@ class WalkingParameters:
     shortest_replan: float = parameter(
         0.08, unit="s", meaning="phases with less time left keep their CoP line", minimum=0.0
     )
+    cmp_excess: float = parameter(
+        0.02, unit="m", meaning="how far the CMP may leave the soles to save balance", minimum=0.0, maximum=0.2
+    )
     hold_error: float = parameter(0.03, unit="m", meaning="DCM error that holds double support", minimum=0.0)
-    hold_extension: float = parameter(0.1, unit="s", meaning="double support is prolonged by this", minimum=0.01)
     hold_limit: float = parameter(1.0, unit="s", meaning="longest hold of double support", minimum=0.0)
     fall_distance: float = parameter(
         0.05, unit="m", meaning="a DCM this far out of support and off its plan is a fall", minimum=0.0
     )
 
-    swing_knots: int = parameter(32, unit="1", meaning="spline intervals of a swing", minimum=16, maximum=128)
-    swing_leave: float = parameter(0.12, unit="1", meaning="share of the swing before the foot travels", minimum=0.1)
-    swing_arrive: float = parameter(
-        0.85, unit="1", meaning="share of the swing when the foot has travelled", maximum=0.9
+    touchdown_force: float = parameter(80.0, unit="N", meaning="normal force that tells a landed foot", minimum=1.0)
+    touchdown_time: float = parameter(0.004, unit="s", meaning="how long it must last", minimum=0.0, maximum=0.1)
+    touchdown_share: float = parameter(
+        0.7, unit="1", meaning="share of the swing before which no contact is a landing", minimum=0.0, maximum=1.0
     )
-    swing_detour: float = parameter(0.15, unit="1", meaning="travel starts later, ends earlier at walls", maximum=0.25)
-    swing_ramp: float = parameter(
-        0.45, unit="1", meaning="most of the swing to rise or sink in", minimum=0.1, maximum=0.5
+    touchdown_distance: float = parameter(
+        0.06, unit="m", meaning="an early contact farther off its foothold is no landing", minimum=0.0
     )
-    swing_shoulder: float = parameter(
-        0.35, unit="1", meaning="share of the way to the apex without waypoints", maximum=0.5
+    touchdown_depth: float = parameter(
+        0.05, unit="m", meaning="an early contact higher over its foothold is no landing", minimum=0.0
     )
-    swing_normal: float = parameter(0.03, unit="m", meaning="way along the surface normal at both ends", minimum=0.001)
-    swing_level: float = parameter(0.5, unit="1", meaning="share of the swing when the sole is level", minimum=0.1)
-    swing_aligned: float = parameter(0.9, unit="1", meaning="share of the swing when it has the foothold's tilt")
-    swing_strict: float = parameter(
-        0.15, unit="1", meaning="share of the swing, at both ends, with an exact orientation", minimum=0.01, maximum=0.5
+    latest_landing: float = parameter(
+        1.8, unit="1", meaning="share of the swing at which a foot counts as landed all the same", minimum=1.0
+    )
+    phantom_time: float = parameter(
+        0.05, unit="s", meaning="a landed foot without force for this long goes on sinking", minimum=0.0
     )
 
     knee_bend: float = parameter(1.0, unit="rad", meaning="knee angle that standing is solved from", minimum=0.2)
@@ -75,12 +81,3 @@ class WalkingParameters:
     shoulder_roll: float = parameter(-1.2, unit="rad", meaning="posture of the left arm, mirrored on the right")
     elbow_pitch: float = parameter(radians(90.0), unit="rad", meaning="posture of both arms")
     elbow_roll: float = parameter(0.6, unit="rad", meaning="posture of the left arm, mirrored on the right")
-
-    control_period: float = parameter(0.01, unit="s", meaning="longest control step", minimum=0.0005, maximum=0.02)
-    control_period: float = parameter(0.01, unit="s", meaning="longest control step", minimum=0.0005, maximum=0.02)
-    ik_iterations: int = parameter(5, unit="1", meaning="iterations of inverse kinematics a control step", minimum=1)
-    ik_tolerance: float = parameter(1e-7, unit="m", meaning="error at which its iterations end", minimum=0.0)
-    sole_residual: float = parameter(
-        0.005, unit="m", meaning="sole error that inverse kinematics may leave", minimum=0.0
-    )
-    com_residual: float = parameter(0.03, unit="m", meaning="CoM error in the plane that it may leave", minimum=0.0)

@@ -73,7 +73,7 @@ CORPUS: dict[str, tuple[str, str, tuple[str, ...]]] = {
         "tree: t\nports: {in: {g: PlanarRegions, s: SubGoal}}\nroot:\n  sequence:\n"
         "    - §PlanFootsteps: {in: {ground: g, sub_goal: s}, out: [plan], latency: 0.7}\n"
         "    - WaitForSwing: {in: [plan], fraction: 0.5}\n",
-        ("can never be in time: a plan takes 0.7 s, and /t/wait_for_swing leaves 0.6 s of a swing of 1.2 s",),
+        ("can never be in time: a plan takes 0.7 s, and /t/wait_for_swing leaves 0.4 s of a swing of 0.8 s",),
     ),
     "tree that includes nothing": (
         "mine.yaml",

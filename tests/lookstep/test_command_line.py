@@ -29,7 +29,7 @@ def test_every_command_explains_itself_with_an_example(command, capsys):
         (["--set", "reach"], "needs the form subject.key=value"),
         (["--set", "course.tilted_shar=1.0"], "tilted_shar"),
         (["--set", "/look_and_step/wal.latency=1"], 'no node "/look_and_step/wal"'),
-        (["--preset", "brsk"], 'unknown preset "brsk"; did you mean "brisk"?'),
+        (["--preset", "papr"], 'unknown preset "papr"; did you mean "paper"?'),
         (["--speed", "-1"], "--speed: got -1.0, needs a positive number"),
         (["--seed", "-1"], "--seed: got -1"),
         (["--time-limit", "0"], "--time-limit: got 0.0"),

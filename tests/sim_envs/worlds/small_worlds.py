@@ -4,7 +4,7 @@ import numpy as np
 
 from sim_envs.courses import Box, Course
 from sim_envs.sensors import DepthCameraParameters
-from sim_envs.worlds import KinematicWorld
+from sim_envs.worlds import SimulatedWorld, WorldKind
 from skills.footsteps.footstep import Footstep, Side
 from skills.geometry.pose import Pose
 
@@ -24,7 +24,8 @@ def course(*boxes, events=(), start=(0.0, 0.0, 0.0)):
 def world(*boxes, **options):
     events, start = options.pop("events", ()), options.pop("start", (0.0, 0.0, 0.0))
     options.setdefault("camera", SMALL_CAMERA)
-    return KinematicWorld(course(*boxes, events=events, start=start), **options)
+    kind = options.pop("kind", WorldKind.KINEMATIC)
+    return SimulatedWorld(course(*boxes, events=events, start=start), kind, **options)
 
 
 def steps(count, length=0.3, first=Side.LEFT, height=0.0):

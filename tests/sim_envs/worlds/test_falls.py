@@ -11,20 +11,18 @@ from sim_envs.robot import RobotDescription
 from sim_envs.worlds import FallDetector, FallParameters
 from skills.geometry.polygon import convex_hull
 from skills.geometry.pose import Pose
-from skills.walking import RobotModel, WalkingParameters, WalkingPhase
-from skills.walking.kinematic_walker import KinematicWalker
+from skills.walking import WalkingPhase
 
 
 @pytest.fixture
 def swinging():
-    """A walker in mid-swing of its left foot, and the ground it walks on."""
-    description = RobotDescription()
-    walker = KinematicWalker(RobotModel(description.mjcf_path), WalkingParameters(), world().true_state().stance)
-    walker.send(steps(3))
-    while walker.status().phase is not WalkingPhase.SWING:
-        walker.advance(0.01)
-    walker.advance(0.2)
-    return walker, Ground((slab(),))
+    """A robot in mid-swing of its left foot, and the ground it walks on."""
+    robot = world()
+    robot.send_footsteps(steps(3))
+    while robot.status().phase is not WalkingPhase.SWING:
+        robot.advance(0.01)
+    robot.advance(0.2)
+    return robot, Ground((slab(),))
 
 
 def _detector():
@@ -36,8 +34,8 @@ def _with_dcm(output, xy):
 
 
 def test_the_dcm_may_be_five_centimetres_outside_the_feet_and_their_next_foothold(swinging):
-    walker, ground = swinging
-    output, status = walker.output, walker.status()
+    robot, ground = swinging
+    output, status = robot.true_state(), robot.status()
     soles = (status.imminent_stance.T_world_left, status.imminent_stance.T_world_right)
     corners = np.column_stack((RobotDescription().sole_corners_sole, np.zeros(4)))
     hull = convex_hull(np.concatenate([(T @ corners)[:, :2] for T in soles]))
@@ -52,25 +50,25 @@ def test_the_dcm_may_be_five_centimetres_outside_the_feet_and_their_next_foothol
 
 
 def test_a_swinging_sole_may_be_two_centimetres_inside_the_ground(swinging):
-    walker, ground = swinging
-    status, stance = walker.status(), walker.output.stance
+    robot, ground = swinging
+    status, stance = robot.status(), robot.true_state().stance
     sole = stance.T_world_left
     for z, falls in ((-0.019, False), (-0.021, True)):
         lowered = stance.with_sole(status.current_step.side, Pose(np.eye(3), np.array((*sole.p[:2], z))))
-        failure = _detector().check(replace(walker.output, stance=lowered), status, ground)
+        failure = _detector().check(replace(robot.true_state(), stance=lowered), status, ground)
         assert failure.startswith("the left sole swung 2 cm into the ground at") is falls
 
 
 def test_a_swinging_sole_beside_a_wall_is_not_in_the_ground(swinging):
-    walker, _ = swinging
+    robot, _ = swinging
     wall = replace(slab(name="wall"), T_world_box=Pose.from_xyz_rpy((0.0, 0.0, 5.0)))
-    assert _detector().check(walker.output, walker.status(), Ground((slab(), wall))) == ""
+    assert _detector().check(robot.true_state(), robot.status(), Ground((slab(), wall))) == ""
 
 
 def test_a_stance_sole_needs_ground_under_a_quarter_of_it_in_mid_stance(swinging):
-    walker, _ = swinging
-    walker.advance(0.15)
-    output, status = walker.output, walker.status()
+    robot, _ = swinging
+    robot.advance(0.15)
+    output, status = robot.true_state(), robot.status()
     toe = output.stance.T_world_right.p[0] + 0.13
     for share, falls in ((0.15, True), (0.4, False)):
         edge = Ground((replace(slab(), T_world_box=Pose.from_xyz_rpy((toe - share * 0.26 + 2.5, 0.0, -0.1))),))

@@ -1,8 +1,7 @@
-"""A world without dynamics: the robot is where its walking controller wants it to be, and falls where that is absurd.
+"""A simulated world: a course, a robot on it that walks over footsteps, and the sensors that it looks with.
 
-Each control step the walking controller's configuration is written into MuJoCo, whose kinematics then place every shape
-for the sensors. Nothing is integrated, so a minute of walking takes seconds; what physics would punish is found by
-comparing soles and DCM with the true ground.
+The robot's body is one of two, with the same walking controller: under physics torques move it, and in the kinematic
+world the accelerations that the controller commands come true. Falls are called by the true ground in both.
 """
 
 # mujoco keeps its types in binary modules without stubs.
@@ -10,6 +9,7 @@ comparing soles and DCM with the true ground.
 
 from __future__ import annotations
 
+from enum import Enum
 from typing import Any
 
 import mujoco
@@ -17,7 +17,7 @@ import numpy as np
 from dm_control import mjcf
 
 from sim_envs.courses import Course, Ground
-from sim_envs.robot import Biped, RobotDescription, qpos_from_configuration
+from sim_envs.robot import Biped, RobotDescription
 from sim_envs.sensors import (
     DepthCamera,
     DepthCameraParameters,
@@ -30,6 +30,8 @@ from sim_envs.sensors import (
 from sim_envs.worlds.arena import CourseArena
 from sim_envs.worlds.box_motion import BoxMotions
 from sim_envs.worlds.falls import FallDetector, FallParameters
+from sim_envs.worlds.kinematic_body import KinematicBody, KinematicParameters
+from sim_envs.worlds.physics_body import PhysicsBody, PhysicsParameters
 from sim_envs.worlds.sensor_frames import SensorFrames
 from sim_envs.worlds.state_drift import StateDrift, StateDriftParameters
 from skills.footsteps.footstep import Footstep, Side, Stance
@@ -37,30 +39,35 @@ from skills.geometry.camera import DepthImage
 from skills.geometry.lidar import LidarScan
 from skills.geometry.pose import Array, Pose
 from skills.parameters import parameter, parameters
-from skills.walking import KinematicWalker, RobotModel, WalkingParameters
-from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingPhase, WalkingStatus
+from skills.walking import RobotModel, Walker, WalkerParameters
+from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingStatus
 
 _ROUNDING = 1e-9  # Robot time is a sum of floats; what is due this soon is due now [s].
 
 
-@parameters
-class KinematicWorldParameters:
-    """Rates and start of the kinematic world."""
+class WorldKind(Enum):
+    """How the robot's body moves."""
 
-    control_rate: float = parameter(
-        100.0, unit="Hz", minimum=10.0, maximum=1000.0, meaning="control steps a second of robot time"
-    )
+    PHYSICS = "physics"
+    KINEMATIC = "kinematic"
+
+
+@parameters
+class WorldParameters:
+    """Where the robot starts."""
+
     stance_width: float = parameter(
         0.24, unit="m", minimum=0.15, maximum=0.6, meaning="distance between the soles' centres at the start"
     )
 
 
-class KinematicWorld:
-    """A robot on a course, tracked perfectly.
+class SimulatedWorld:
+    """A robot on a course.
 
     Args:
         course: the ground; the robot starts at its start.
-        seed: of the sensor noise.
+        kind: how its body moves.
+        seed: of the noise.
 
     Raises:
         ValueError: where there is no ground under a foot at the start.
@@ -69,11 +76,14 @@ class KinematicWorld:
     def __init__(
         self,
         course: Course,
+        kind: WorldKind = WorldKind.KINEMATIC,
         *,
         seed: int = 0,
-        parameters: KinematicWorldParameters | None = None,
+        parameters: WorldParameters | None = None,
+        physics: PhysicsParameters | None = None,
+        kinematic: KinematicParameters | None = None,
         robot: RobotDescription | None = None,
-        walking: WalkingParameters | None = None,
+        walker: WalkerParameters | None = None,
         camera: DepthCameraParameters | None = None,
         noise: DepthNoise | None = None,
         lidar: LidarParameters | None = None,
@@ -82,7 +92,8 @@ class KinematicWorld:
         drift: StateDriftParameters | None = None,
     ) -> None:
         self.course = course
-        self.parameters = parameters or KinematicWorldParameters()
+        self.kind = kind
+        self.parameters = parameters or WorldParameters()
         self.robot = robot or RobotDescription()
         self._box_poses = {box.name: box.T_world_box for box in course.boxes}
         self._told_box_poses = {box.name: _as_tuples(box.T_world_box) for box in course.boxes}
@@ -100,20 +111,22 @@ class KinematicWorld:
         self._images = SensorFrames(self._camera, self._index(self._biped.camera_body), self.robot.T_body_camera)
         self._scans = SensorFrames(self._lidar, self._index(self._biped.lidar_body), self.robot.T_body_lidar)
 
-        model = RobotModel(self.robot.mjcf_path, self.robot.sole_length, self.robot.sole_width)
-        self._walker = KinematicWalker(model, walking or WalkingParameters(), self._start_stance())
+        self._true_state: RobotState | None = None
+        model = self._model = RobotModel(
+            self.robot.mjcf_path, self.robot.sole_length, self.robot.sole_width, self.robot.torso_body
+        )
+        self._walker = Walker(model, self._start_stance(), walker or WalkerParameters())
+        self._body = self._make_body(model, physics or PhysicsParameters(), kinematic or KinematicParameters(), seed)
         self._falls = FallDetector(falls or FallParameters(), self.robot)
         self._drift = StateDrift(drift or StateDriftParameters())
-        self._control_steps = 0
         self._asked_time = 0.0
-        self._pose_robot(self._walker.output.q)
         self._place_shapes()
         self._look()
 
     @property
     def time(self) -> float:
         """Robot time [s]."""
-        return self._control_steps / self.parameters.control_rate
+        return self._body.time
 
     @property
     def model(self) -> mujoco.MjModel:
@@ -143,7 +156,9 @@ class KinematicWorld:
 
     def true_state(self) -> RobotState:
         """The state without estimation error."""
-        return self._walker.state()
+        if self._true_state is None:
+            self._true_state = self._model.state(self.time, *self._body.true_configuration(), self._walker.omega)
+        return self._true_state
 
     def status(self) -> WalkingStatus:
         """What the walking controller is doing; fallen, and why, once it or the world calls it a fall."""
@@ -180,7 +195,7 @@ class KinematicWorld:
     def advance(self, duration: float) -> None:
         """Let robot time run on, by whole control steps; what is left of the duration counts next time [s]."""
         self._asked_time += duration
-        while (self._control_steps + 1) / self.parameters.control_rate <= self._asked_time + _ROUNDING:
+        while self._body.next_time <= self._asked_time + _ROUNDING:
             self._control_step()
 
     def box_poses(self) -> dict[str, tuple[tuple[float, ...], tuple[float, ...]]]:
@@ -206,19 +221,19 @@ class KinematicWorld:
         return data.geom_xpos.copy(), data.geom_xmat.reshape(-1, 3, 3).copy()
 
     def _control_step(self) -> None:
-        self._control_steps += 1
-        for name, T_world_box in self._motions.advance(self.time, self._pelvis, self._box_poses).items():
+        before = self.time
+        for name, T_world_box in self._motions.advance(self._body.next_time, self._pelvis, self._box_poses).items():
             self.move_box(name, T_world_box)
-        self._walk()
+        self._body.advance()
+        self._true_state = None
         self._place_shapes()
-        self._drift.advance(self.time, 1.0 / self.parameters.control_rate, self._pelvis)
+        self._drift.advance(self.time, self.time - before, self._pelvis)
+        self._check_fall()
         self._look()
 
-    def _walk(self) -> None:
-        output = self._walker.advance(1.0 / self.parameters.control_rate)
-        self._pose_robot(output.q)
-        if output.phase is not WalkingPhase.FALLEN:
-            failure = self._falls.check(output, self._walker.status(), self.ground)
+    def _check_fall(self) -> None:
+        if not self._walker.fallen:
+            failure = self._falls.check(self.true_state(), self._walker.status(), self.ground)
             if failure:
                 self._walker.fall(failure)
 
@@ -241,8 +256,14 @@ class KinematicWorld:
             soles.append(Pose.from_xyz_rpy((p[0], p[1], height), (0.0, 0.0, yaw)))
         return Stance(*soles)
 
-    def _pose_robot(self, q: Array) -> None:
-        self.physics.data.ptr.qpos[:] = qpos_from_configuration(q)
+    def _make_body(
+        self, model: RobotModel, physics: PhysicsParameters, kinematic: KinematicParameters, seed: int
+    ) -> PhysicsBody | KinematicBody:
+        data = self.physics.data.ptr
+        if self.kind is WorldKind.PHYSICS:
+            prefix = f"{self._biped.mjcf_model.model}/"
+            return PhysicsBody(self.model, data, self._walker, physics, prefix, seed)
+        return KinematicBody(data, self._walker, model, kinematic, self.robot, lambda: self.ground)
 
     def _place_shapes(self) -> None:
         mujoco.mj_kinematics(self.model, self.physics.data.ptr)

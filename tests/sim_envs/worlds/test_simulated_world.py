@@ -1,4 +1,4 @@
-"""The kinematic world drives like a robot, sees what is there, and falls where a real robot would."""
+"""A simulated world drives like a robot, sees what is there, and falls where a real robot would."""
 
 import inspect
 from dataclasses import replace
@@ -9,17 +9,17 @@ from small_worlds import slab, steps, world
 
 from behaviors.robot import Robot, World
 from sim_envs.courses import Box, BoxEvent
-from sim_envs.worlds import KinematicWorld, StateDriftParameters
+from sim_envs.worlds import SimulatedWorld, StateDriftParameters, WorldKind
 from skills.footsteps.footstep import Side
 from skills.geometry.pose import Pose
 from skills.walking import StepEventKind, WalkingPhase
 
 
-def _robot(it: KinematicWorld) -> Robot:
+def _robot(it: SimulatedWorld) -> Robot:
     return it  # The type checker proves the structure.
 
 
-def _world(it: KinematicWorld) -> World:
+def _world(it: SimulatedWorld) -> World:
     return it
 
 
@@ -46,8 +46,8 @@ def test_a_walk_over_level_ground_ends_standing_on_the_last_footholds():
     it = world()
     status = _walk(it, steps(5), 8.0)
     assert (status.phase, status.failure) == (WalkingPhase.STANDING, "")
-    np.testing.assert_allclose(it.state().stance.T_world_left.p, (1.2, 0.12, 0.0), atol=1e-3)
-    np.testing.assert_allclose(it.state().stance.T_world_right.p, (1.2, -0.12, 0.0), atol=1e-3)
+    np.testing.assert_allclose(it.state().stance.T_world_left.p, (1.2, 0.12, 0.0), atol=6e-3)
+    np.testing.assert_allclose(it.state().stance.T_world_right.p, (1.2, -0.12, 0.0), atol=6e-3)
     events = it.drain_events()
     assert [(e.kind, e.step.sequence_id) for e in events] == [
         (kind, i) for i in range(5) for kind in (StepEventKind.STARTED, StepEventKind.COMPLETED)
@@ -138,16 +138,19 @@ def test_a_step_into_a_block_is_a_fall_and_stays_one():
     assert it.time == pytest.approx(8.0)
 
 
-def test_a_step_on_air_is_a_fall_at_the_next_mid_stance():
+def test_a_step_on_air_is_a_fall():
     it = world(slab(x_end=0.4))
     status = _walk(it, steps(4), 6.0)
     assert status.phase is WalkingPhase.FALLEN
-    assert status.failure == "only 0 % of the right sole stood on ground"
+    assert status.failure
 
 
-def test_a_foothold_in_the_air_above_the_ground_carries_nobody():
-    status = _walk(world(), steps(4, height=0.05), 6.0)
-    assert status.failure == "only 0 % of the left sole stood on ground"
+@pytest.mark.parametrize("kind", WorldKind)
+def test_a_foot_that_finds_no_ground_at_its_foothold_sinks_until_it_does(kind):
+    it = world(kind=kind)
+    status = _walk(it, steps(4, height=0.03), 6.0)
+    assert (status.phase, status.failure) == (WalkingPhase.STANDING, "")
+    assert abs(it.true_state().stance.T_world_left.p[2]) < 3e-3
 
 
 def test_a_foothold_out_of_reach_is_a_fall():
@@ -211,5 +214,5 @@ def test_a_drifting_estimate_leaves_the_truth_and_commands_follow_the_estimate()
     stay = replace(steps(1)[0], T_world_sole=estimated.stance.T_world_left)
     it.send_footsteps((stay,))
     it.advance(3.0)
-    np.testing.assert_allclose(it.true_state().stance.T_world_left.p, true.stance.T_world_left.p, atol=1e-9)
+    np.testing.assert_allclose(it.true_state().stance.T_world_left.p, true.stance.T_world_left.p, atol=3e-3)
     assert it.status().failure == ""

@@ -1,0 +1,71 @@
+"""How the robot holds itself: the posture that joints are drawn to, and the configuration in which it stands."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from skills.footsteps.footstep import Side, Stance
+from skills.geometry.pose import Array, Pose, rotation_y, rotation_z
+from skills.walking.inverse_kinematics import IkSolution, InverseKinematics
+from skills.walking.robot_model import RobotModel
+from skills.walking.walking_parameters import WalkingParameters
+
+_ITERATIONS = 100
+_TOLERANCE = 1e-7
+_SOLE_RESIDUAL = 0.005
+_COM_RESIDUAL = 0.03
+
+
+def nominal_posture(model: RobotModel, parameters: WalkingParameters) -> Array:
+    """Bent knees, arms at the sides, (7 + n,) with the pelvis at the origin."""
+    q = model.neutral_configuration()
+    for side in Side:
+        for name, angle in (
+            ("shoulder_yaw", parameters.shoulder_yaw * side.sign),
+            ("shoulder_roll", parameters.shoulder_roll * side.sign),
+            ("elbow_pitch", parameters.elbow_pitch),
+            ("elbow_roll", parameters.elbow_roll * side.sign),
+        ):
+            joint = f"{side.value}_{name}"
+            if joint in model.joint_names:
+                q[7 + model.joint_names.index(joint)] = angle
+        hip, knee, ankle = model.legs[side].joints[2:5]
+        bend = parameters.knee_bend
+        q[[7 + hip, 7 + knee, 7 + ankle]] = -0.5 * bend, bend, -0.5 * bend
+    q[7:] = np.clip(q[7:], model.lower_limits, model.upper_limits)
+    return q
+
+
+def standing_configuration(model: RobotModel, stance: Stance, parameters: WalkingParameters) -> Array:
+    """The configuration that stands on a stance with the CoM between the feet, (7 + n,).
+
+    Raises:
+        ValueError: where the legs do not reach.
+    """
+    p = parameters
+    height = min(sole.p[2] for sole in (stance.T_world_left, stance.T_world_right)) + p.com_height
+    com = np.array((*stance.mid_feet[:2], height))
+    R = rotation_z(stance.yaw) @ rotation_y(p.pelvis_pitch)
+    q = nominal_posture(model, p)
+    q[:3] = com - model.com(q)
+    q[3:7] = Pose(R, np.zeros(3)).quaternion_xyzw
+    solution = InverseKinematics(model).solve(q, com, R, stance, _ITERATIONS, _TOLERANCE)
+    failure = _out_of_reach(solution)
+    if failure:
+        raise ValueError(
+            f"the robot cannot stand on soles at {stance.T_world_left.p}, {stance.T_world_right.p}: {failure}"
+        )
+    return solution.q
+
+
+def _out_of_reach(solution: IkSolution) -> str:
+    """One sentence where inverse kinematics missed its targets; empty where it did not."""
+    errors = (
+        (solution.left_error, _SOLE_RESIDUAL, "the left sole"),
+        (solution.right_error, _SOLE_RESIDUAL, "the right sole"),
+        (solution.com_error, _COM_RESIDUAL, "the CoM"),
+    )
+    for error, limit, name in errors:
+        if error > limit:
+            return f"inverse kinematics is off by {1000 * error:.0f} mm at {name}"
+    return ""

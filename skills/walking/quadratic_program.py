@@ -1,0 +1,110 @@
+"""A convex quadratic program of fixed sparsity, and OSQP as its solver.
+
+    minimize  1/2 x' P x + q' x   subject to   lower <= A x <= upper
+
+Every control tick has other numbers in the same places, so the sparsity is told once and values are sent after that
+(Stellato et al., "OSQP: an operator splitting solver for quadratic programs", 2020). The step size adapts by iteration
+count and never by time, so that a run can be repeated to the last bit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import Protocol
+
+import numpy as np
+import osqp
+from scipy import sparse
+
+from skills.geometry.pose import Array, Mask
+
+
+class QpStatus(Enum):
+    """How a quadratic program ended."""
+
+    SOLVED = "solved"
+    INACCURATE = "inaccurate"
+    FAILED = "failed"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class QpSolution:
+    """What a solver found.
+
+    Attributes:
+        x: the minimiser, (N,); the best iterate where inaccurate, of no meaning where failed.
+        status: how it ended.
+        iterations: made by the solver.
+    """
+
+    x: Array
+    status: QpStatus
+    iterations: int
+
+
+class QpSolver(Protocol):
+    """Solves one quadratic program after another, all of one sparsity."""
+
+    def solve(self, P: Array, q: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
+        """Solve a program given by dense P (N, N), q (N,), A (M, N) and bounds (M,)."""
+        ...
+
+
+class OsqpSolver:
+    """OSQP with a warm start.
+
+    Args:
+        P_pattern, A_pattern: where P (N, N) and A (M, N) may have values, boolean.
+        tolerance: absolute and relative.
+        max_iterations: after which an inaccurate solution is returned.
+        check_every: iterations between looks at the residuals.
+    """
+
+    def __init__(
+        self, P_pattern: Mask, A_pattern: Mask, tolerance: float, max_iterations: int, check_every: int
+    ) -> None:
+        # Column by column, as OSQP stores them: a transposed mask makes numpy walk in that order.
+        self._P_mask = np.triu(P_pattern).T.copy()
+        self._A_mask = np.ascontiguousarray(A_pattern.T)
+        n, m = P_pattern.shape[0], A_pattern.shape[0]
+        self._solver = osqp.OSQP()
+        self._solver.setup(
+            _with_pattern(np.triu(P_pattern)),
+            np.zeros(n),
+            _with_pattern(A_pattern),
+            np.full(m, -1.0),
+            np.full(m, 1.0),
+            verbose=False,
+            eps_abs=tolerance,
+            eps_rel=tolerance,
+            max_iter=max_iterations,
+            check_termination=check_every,
+            adaptive_rho=1,
+            adaptive_rho_interval=check_every,
+            warm_starting=True,
+            polishing=False,
+        )
+
+    def solve(self, P: Array, q: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
+        """Solve one program, starting from the solution of the one before."""
+        self._solver.update(Px=P.T[self._P_mask], Ax=A.T[self._A_mask], q=q, l=lower, u=upper)
+        result = self._solver.solve(raise_error=False)
+        x = np.array(result.x)
+        status = _STATUS.get(result.info.status, QpStatus.FAILED)
+        if not np.all(np.isfinite(x)):
+            status = QpStatus.FAILED
+        return QpSolution(x, status, int(result.info.iter))
+
+
+# OSQP's own words for how it ended; all others mean that there is no usable solution.
+_STATUS = {
+    "solved": QpStatus.SOLVED,
+    "solved inaccurate": QpStatus.INACCURATE,
+    "maximum iterations reached": QpStatus.INACCURATE,
+}
+
+
+def _with_pattern(pattern: Mask) -> sparse.csc_matrix:
+    """A sparse matrix of ones with explicit places for all of a pattern."""
+    return sparse.csc_matrix(np.asarray(pattern, dtype=np.float64))

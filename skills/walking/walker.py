@@ -1,0 +1,381 @@
+"""Walks over a queue of footsteps: from the measured state of the body to joint torques, once a control tick.
+
+The gait says what the feet do, balance says how the CoM shall accelerate, a swing says how the foot in the air moves,
+and the whole-body controller finds the torques that do all of it. A newer plan replaces the queued steps at any time.
+The walker knows its body, not the world: what is measured comes in, torques and accelerations go out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import pinocchio as pin  # pyright: ignore[reportMissingImports]
+
+from skills.footsteps.footstep import Footstep, Side, Stance
+from skills.geometry.pose import Array, rotation_y, rotation_z, wrap_angle
+from skills.walking.balance import Balance, BalanceCommand
+from skills.walking.body_dynamics import BodyDynamics
+from skills.walking.contact import Contact
+from skills.walking.gait import Gait, toe_points
+from skills.walking.posture import nominal_posture, standing_configuration
+from skills.walking.quadratic_program import QpStatus
+from skills.walking.robot_model import RobotModel
+from skills.walking.swing_parameters import SwingParameters
+from skills.walking.uniform_spline import minimum_jerk_at
+from skills.walking.walking_parameters import WalkingParameters
+from skills.walking.walking_state import (
+    ControlSample,
+    StepEvent,
+    StepEventKind,
+    WalkingPhase,
+    WalkingStatus,
+)
+from skills.walking.whole_body_controller import BodyCommand, BodyTasks, SoleTask, WholeBodyController
+from skills.walking.whole_body_parameters import WholeBodyParameters
+
+_ROUNDING = 1e-9
+_ZERO = np.zeros(3)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BodyMeasurement:
+    """What the robot measures of itself in one control tick.
+
+    Attributes:
+        time: robot time [s].
+        q, v: configuration (7 + n,) and velocity (6 + n,) in pinocchio's order, as estimated.
+        loads: normal force under each sole [N].
+    """
+
+    time: float
+    q: Array
+    v: Array
+    loads: Mapping[Side, float]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WalkerParameters:
+    """All settings of a walker.
+
+    Attributes:
+        walking: phases, balance and posture.
+        swing: the way of a foot through the air.
+        whole_body: weights, gains and limits of the whole body.
+    """
+
+    walking: WalkingParameters = field(default_factory=WalkingParameters)
+    swing: SwingParameters = field(default_factory=SwingParameters)
+    whole_body: WholeBodyParameters = field(default_factory=WholeBodyParameters)
+
+
+class Walker:
+    """Walks a queue of footsteps.
+
+    Args:
+        model: the robot.
+        stance: both soles at the start, where the robot stands.
+        parameters: settings.
+
+    Raises:
+        ValueError: where the robot cannot stand like that.
+    """
+
+    def __init__(self, model: RobotModel, stance: Stance, parameters: WalkerParameters) -> None:
+        walking, whole_body = parameters.walking, parameters.whole_body
+        self._model, self._parameters, self._body_parameters = model, walking, whole_body
+        self.start_configuration = standing_configuration(model, stance, walking)
+        self._posture = nominal_posture(model, walking)[7:]
+        self._posture_weights = _posture_weights(model, whole_body)
+        self._body = BodyDynamics(model)
+        self._whole_body = WholeBodyController(model, whole_body)
+        self._gait = Gait(stance, model.foothold_sole, walking, parameters.swing)
+        self._balance = Balance(self._gait, model, walking, whole_body)
+        self._contacts: dict[Side, Contact] = {}
+        self._yaw = self._yaw_from = stance.yaw
+        self._paused, self._failure = False, ""
+        self._touching = dict.fromkeys(Side, 0.0)
+        self._events: list[StepEvent] = []
+        self._log: list[ControlSample] = []
+        self.qp_failures = 0
+        self._time = 0.0
+        self._body.update(self.start_configuration, np.zeros(model.pin_model.nv))
+        self._replan()
+
+    def send(self, steps: Sequence[Footstep]) -> None:
+        """Replace the queue; the step whose foot is in the air goes on.
+
+        Steps that began already are dropped by their sequence ids. In double support the step to come gives way to a
+        plan that begins with the same foot. After a fall nothing happens.
+
+        Raises:
+            ValueError: where the steps cannot follow the current one; the queue stays as it was.
+        """
+        if not self._failure:
+            self._gait.accept(steps)
+            self._paused = False
+            self._replan()
+
+    def pause(self) -> None:
+        """Drop the queue, finish the current step, then stand."""
+        if not self._failure:
+            self._gait.queue, self._paused = (), True
+            self._replan()
+
+    def fall(self, reason: str) -> None:
+        """End walking for a reason that the operator reads; the first one stays."""
+        if not self._failure:
+            self._failure, self._gait.queue = reason, ()
+
+    def control(self, measured: BodyMeasurement) -> BodyCommand:
+        """The command of one control tick."""
+        dt = measured.time - self._time
+        self._time = measured.time
+        self._body.update(measured.q, measured.v)
+        self._gait.advance(dt)
+        self._time_contacts(measured, dt)
+        self._change_phase(dt)
+        self._turn(dt)
+        balance = self._balance.control(self._body, dt)
+        lost = self._balance.fall()
+        if lost:
+            self.fall(lost)
+        command = self._whole_body.solve(self._body, self._tasks(balance))
+        self.qp_failures += command.status is QpStatus.FAILED
+        self._log.append(self._sample(balance, command))
+        return command
+
+    def status(self) -> WalkingStatus:
+        """What the walker is doing."""
+        gait = self._gait
+        standing = gait.phase is WalkingPhase.STANDING
+        return WalkingStatus(
+            phase=self._phase,
+            phase_elapsed=0.0 if standing else gait.elapsed,
+            phase_duration=0.0 if standing else gait.duration,
+            current_step=gait.step,
+            queue=gait.queue,
+            imminent_stance=gait.landed_stance(),
+            last_side=gait.last_side if gait.step is None else gait.step.side,
+            paused=self._paused,
+            failure=self._failure,
+            last_sequence_id=gait.last_sequence_id,
+        )
+
+    def drain_events(self) -> tuple[StepEvent, ...]:
+        """Step events since the last call, oldest first."""
+        events, self._events = tuple(self._events), []
+        return events
+
+    def drain_log(self) -> tuple[ControlSample, ...]:
+        """Control samples since the last call, oldest first."""
+        log, self._log = tuple(self._log), []
+        return log
+
+    @property
+    def supports(self) -> tuple[Side, ...]:
+        """The feet that stand on the ground."""
+        swing = self._gait.swing
+        return tuple(side for side in Side if swing is None or side is not swing.step.side)
+
+    @property
+    def omega(self) -> float:
+        """Rate of the pendulum that balance plans with [1/s]."""
+        return self._balance.omega
+
+    @property
+    def fallen(self) -> bool:
+        """Whether walking has ended in a fall."""
+        return bool(self._failure)
+
+    @property
+    def _phase(self) -> WalkingPhase:
+        return WalkingPhase.FALLEN if self._failure else self._gait.phase
+
+    def _time_contacts(self, measured: BodyMeasurement, dt: float) -> None:
+        """How long each sole has been pressed by the ground."""
+        for side in Side:
+            touches = measured.loads[side] > self._parameters.touchdown_force
+            self._touching[side] = self._touching[side] + dt if touches else 0.0
+
+    def _change_phase(self, dt: float) -> None:
+        gait = self._gait
+        if gait.phase is WalkingPhase.SWING:
+            if self._has_landed():
+                self._land()
+        elif gait.phase is WalkingPhase.TRANSFER:
+            if gait.elapsed >= gait.duration:
+                self._end_transfer(dt)
+            elif self._must_toe_off():
+                gait.lift_heel()
+                self._contacts.clear()
+
+    def _end_transfer(self, dt: float) -> None:
+        gait = self._gait
+        if gait.step is None:
+            gait.stand()
+        elif self._balance.must_hold():
+            gait.hold(dt)
+            return
+        else:
+            T_world_sole = self._body.sole(gait.step.side)
+            self._yaw_from = self._yaw
+            step = gait.lift_off(T_world_sole)
+            self._events.append(StepEvent(StepEventKind.STARTED, self._time, step, T_world_sole))
+        self._replan()
+
+    def _has_landed(self) -> bool:
+        p, swing = self._parameters, self._gait.swing
+        assert swing is not None
+        side = swing.step.side
+        if swing.share > p.latest_landing:
+            return True
+        if self._touching[side] < p.touchdown_time - _ROUNDING:
+            return False
+        if swing.share >= 1.0:
+            return True
+        if swing.share < p.touchdown_share:
+            return False
+        target, sole = swing.T_world_target, self._body.sole(side)
+        off = sole.p - target.p
+        return bool(np.hypot(off[0], off[1]) < p.touchdown_distance and off[2] < p.touchdown_depth)
+
+    def _land(self) -> None:
+        side = self._gait.swing.step.side if self._gait.swing is not None else Side.LEFT
+        T_world_sole = self._body.sole(side)
+        self._yaw_from = self._yaw
+        step = self._gait.land(T_world_sole)
+        self._events.append(StepEvent(StepEventKind.COMPLETED, self._time, step, T_world_sole))
+        self._replan()
+
+    def _must_toe_off(self) -> bool:
+        """Whether the trailing leg is nearly straight, and its toe enough for where the CoP is."""
+        gait = self._gait
+        if gait.on_toe or gait.step is None:
+            return False
+        knee = self._model.legs[gait.step.side].joints[3]
+        if self._body.q[7 + knee] >= self._parameters.toe_off_knee:
+            return False
+        return gait.toe_support().distance(self._balance.cop) <= 0.0
+
+    def _replan(self) -> None:
+        gait, soles = self._gait, {side: self._body.sole(side) for side in Side}
+        if gait.on_toe and gait.step is not None:
+            soles[gait.step.side] = gait.stance.sole(gait.step.side)
+        gait.rest_on(Stance(soles[Side.LEFT], soles[Side.RIGHT]))
+        self._contacts.clear()
+        self._balance.replan(self._body, self._yaw)
+
+    def _turn(self, dt: float) -> None:
+        """Turn the heading of the pelvis in the swing to the mean of the feet."""
+        gait, before = self._gait, self._yaw
+        if gait.swing is not None:
+            share = minimum_jerk_at(gait.swing.share)
+            self._yaw = wrap_angle(self._yaw_from + share * wrap_angle(gait.landed_stance().yaw - self._yaw_from))
+        self._yaw_rate = wrap_angle(self._yaw - before) / dt if dt > 0.0 else 0.0
+
+    def _tasks(self, balance: BalanceCommand) -> BodyTasks:
+        p, body = self._body_parameters, self._body
+        R_upright = rotation_z(self._yaw)
+        pelvis_rate = body.v[3:6]
+        torso_rate = body.torso_jacobian @ body.v
+        R_pelvis = R_upright @ rotation_y(self._parameters.pelvis_pitch)
+        turn = np.array((0.0, 0.0, self._yaw_rate))
+        posture = p.posture_stiffness * (self._posture - body.q[7:]) - p.posture_damping * body.v[6:]
+        weights = self._posture_weights
+        if self._gait.on_toe and self._gait.step is not None:
+            knee = self._model.legs[self._gait.step.side].joints[3]
+            weights = weights.copy()
+            bend = self._parameters.toe_off_knee - body.q[7 + knee]
+            posture[knee] = p.bent_knee_stiffness * bend - p.bent_knee_damping * body.v[6 + knee]
+            weights[knee] = p.bent_knee_weight
+        return BodyTasks(
+            com_acceleration=balance.com_acceleration,
+            momentum_rate=-p.momentum_damping * body.momentum[3:],
+            pelvis_acceleration=_turn_towards(
+                body.R_world_pelvis, R_pelvis, pelvis_rate, turn, p.pelvis_stiffness, p.pelvis_damping
+            ),
+            torso_acceleration=_turn_towards(
+                body.R_world_torso, R_upright, torso_rate, turn, p.torso_stiffness, p.torso_damping
+            ),
+            posture_acceleration=posture,
+            posture_weights=weights,
+            soles={side: self._sole_task(side) for side in Side},
+        )
+
+    def _sole_task(self, side: Side) -> SoleTask:
+        swing = self._gait.swing
+        if swing is not None and swing.step.side is side:
+            return self._swing_task(side)
+        return self._stance_task(side)
+
+    def _stance_task(self, side: Side) -> SoleTask:
+        p, gait, sole = self._body_parameters, self._gait, self._body.sole(side)
+        velocity = self._body.sole_velocity(side)
+        weights = np.full(6, p.stance_weight)
+        acceleration = -p.stance_damping * velocity
+        if gait.on_toe and gait.step is not None and gait.step.side is side:
+            points = gait.points(side)
+            toe = np.append(points[toe_points(points)].mean(axis=0), 0.0)
+            acceleration[:3] -= p.stance_damping * np.cross(velocity[3:], toe)
+            weights[4] = 0.0
+            return SoleTask(acceleration, weights, toe, self._contact(side))
+        if p.stance_stiffness > 0.0:
+            latched = gait.stance.sole(side)
+            acceleration[:3] += p.stance_stiffness * (sole.R.T @ (latched.p - sole.p))
+            acceleration[3:] += p.stance_stiffness * pin.log3(sole.R.T @ latched.R)
+        return SoleTask(acceleration, weights, _ZERO, self._contact(side))
+
+    def _swing_task(self, side: Side) -> SoleTask:
+        p, sole = self._body_parameters, self._body.sole(side)
+        swing = self._gait.swing
+        assert swing is not None
+        motion = swing.motion()
+        to_sole = sole.R.T
+        velocity = self._body.sole_velocity(side)
+        linear = to_sole @ (motion.acceleration[:3] + p.swing_stiffness * (motion.pose.p - sole.p))
+        linear += p.swing_damping * (to_sole @ motion.velocity[:3] - velocity[:3])
+        # The task is a spatial acceleration: the classical one without the part that turning makes.
+        linear -= np.cross(velocity[3:], velocity[:3])
+        angular = to_sole @ motion.acceleration[3:] + p.swing_stiffness * pin.log3(to_sole @ motion.pose.R)
+        angular += p.swing_damping * (to_sole @ motion.velocity[3:] - velocity[3:])
+        weights = np.array([p.swing_weight] * 3 + [p.swing_turn_weight] * 3)
+        return SoleTask(np.concatenate((linear, angular)), weights, _ZERO, None)
+
+    def _contact(self, side: Side) -> Contact:
+        """Where the ground pushes a sole; made anew when support changes."""
+        if side not in self._contacts:
+            gait, points = self._gait, self._gait.points(side)
+            on_toe = gait.on_toe and gait.step is not None and gait.step.side is side
+            loaded = toe_points(points) if on_toe else None
+            self._contacts[side] = Contact.at(points, self._body_parameters.friction, loaded)
+        return self._contacts[side]
+
+    def _sample(self, balance: BalanceCommand, command: BodyCommand) -> ControlSample:
+        body, omega = self._body, self._balance.omega
+        dcm = body.com + body.com_velocity / omega
+        reference = self._balance.dcm_reference
+        return ControlSample(
+            time=self._time,
+            phase=self._phase,
+            com_world=body.com,
+            dcm_world=dcm,
+            dcm_reference_world=np.array((reference[0], reference[1], dcm[2])),
+            cop_world=np.array((*balance.cmp, self._gait.stance.mid_feet[2])),
+            dcm_error=self._balance.dcm_error,
+        )
+
+
+def _turn_towards(R: Array, R_wanted: Array, rate: Array, turn_world: Array, stiffness: float, damping: float) -> Array:
+    """Angular acceleration of a body in its own frame that turns it to an orientation which turns itself, (3,)."""
+    return stiffness * pin.log3(R.T @ R_wanted) + damping * (R.T @ turn_world - rate)
+
+
+def _posture_weights(model: RobotModel, parameters: WholeBodyParameters) -> Array:
+    """Weight of each joint's posture, (n,): legs, back, and all others, which are arms."""
+    weights = np.full(len(model.joint_names), parameters.arm_weight)
+    weights[list(model.back)] = parameters.back_weight
+    for leg in model.legs.values():
+        weights[list(leg.joints)] = parameters.leg_weight
+    return weights
