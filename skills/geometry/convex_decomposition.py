@@ -8,13 +8,14 @@ small. The hulls of the pieces are the parts: they cover all of the polygon and 
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.polygon import turn
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import leaf_kernel
 
 Indices = NDArray[np.int64]
 
@@ -37,27 +38,64 @@ def convex_parts(polygon: Array, tolerance: float, holes: tuple[Array, ...] = ()
     """
     rings = (polygon, *holes)
     vertices = np.array(np.concatenate(rings), dtype=np.float64)
-    parts, ends = decompose(vertices, np.cumsum([len(ring) for ring in rings]), tolerance)
-    return tuple(parts[a:b] for a, b in pairwise((0, *ends.tolist())))
+    room = decomposing_room(len(vertices), len(rings))
+    corners, ends = np.empty((len(room.stack), 2)), np.empty(len(room.sizes), np.int64)
+    count = decompose(vertices, np.cumsum([len(ring) for ring in rings]), tolerance, room, 0, corners, ends)
+    return tuple(corners[a:b] for a, b in pairwise((0, *ends[:count].tolist())))
 
 
-@kernel
-def decompose(vertices: Array, ring_ends: Indices, tolerance: float) -> tuple[Array, Indices]:
-    """Convex parts of an outline and its holes, stacked as vertices (N, 2) and ring ends; stacked too, and their ends.
+class DecomposingRoom(NamedTuple):
+    """Room for work: pieces, their sizes, the piece at hand and its hull, and which holes are joined to the outline."""
 
-    Rings without vertices are no holes.
-    """
+    stack: Indices
+    sizes: Indices
+    piece: Indices
+    hull: Indices
+    joined: NDArray[np.bool_]
+
+
+def decomposing_room(vertices: int, rings: int) -> DecomposingRoom:
+    """Room for a polygon of so many vertices and rings; parts have no more corners than the stack and no more ends
+    than the sizes have places."""
     # Every bridge and every cut repeats two vertices, and there are fewer cuts than vertices.
-    capacity = vertices.shape[0] + 2 * ring_ends.shape[0]
-    stack = np.empty(4 * capacity + 8, np.int64)
-    sizes = np.empty(2 * capacity + 8, np.int64)
-    corners = np.empty((4 * capacity + 8, 2))
-    ends = np.empty(2 * capacity + 8, np.int64)
-    piece = np.empty(capacity, np.int64)
-    hull = np.empty(capacity, np.int64)
-    sizes[0] = _bridged(vertices, ring_ends, stack)
+    capacity = vertices + 2 * rings
+    return DecomposingRoom(
+        np.empty(4 * capacity + 8, np.int64),
+        np.empty(2 * capacity + 8, np.int64),
+        np.empty(capacity, np.int64),
+        np.empty(capacity, np.int64),
+        np.empty(rings, np.bool_),
+    )
+
+
+@leaf_kernel
+def decompose(
+    vertices: Array,
+    ring_ends: Indices,
+    tolerance: float,
+    room: DecomposingRoom,
+    begin: int,
+    corners: Array,
+    ends: Indices,
+) -> int:
+    """Convex parts of an outline and its holes.
+
+    Args:
+        vertices: of the outline and then of the holes, (N, 2).
+        ring_ends: the end of each, (R,); rings without vertices are no holes.
+        tolerance: greatest depth of a notch that is filled [m].
+        room: for at least N vertices in R rings.
+        begin: where the parts begin in `corners`.
+        corners: out, of the parts, stacked.
+        ends: out, the end of each part in `corners`.
+
+    Returns:
+        How many parts there are.
+    """
+    stack, sizes, piece, hull = room.stack, room.sizes, room.piece, room.hull
+    sizes[0] = _bridged(vertices, ring_ends, stack, hull, room.joined)
     whole = 0.5 * _doubled_area(vertices, stack, sizes[0])
-    top, depth, written, parts = sizes[0], 1, 0, 0
+    top, depth, written, parts = sizes[0], 1, begin, 0
     while depth > 0:
         depth -= 1
         m = sizes[depth]
@@ -84,18 +122,23 @@ def decompose(vertices: Array, ring_ends: Indices, tolerance: float) -> tuple[Ar
             top += size
             sizes[depth] = size
             depth += 1
-    return corners[:written], ends[:parts]
+    return parts
 
 
-@kernel
-def _bridged(vertices: Array, ring_ends: Indices, outline: Indices) -> int:
-    """Write one outline that runs around the polygon and, over doubled edges, around its holes; how many places."""
+@leaf_kernel
+def _bridged(vertices: Array, ring_ends: Indices, outline: Indices, loop: Indices, joined: NDArray[np.bool_]) -> int:
+    """Write one outline that runs around the polygon and, over doubled edges, around its holes; how many places.
+
+    Loop and joined are room for a number of each vertex and a mark of each ring.
+    """
     count = ring_ends[0]
     for k in range(count):
         outline[k] = k
     rings = ring_ends.shape[0]
-    joined = np.zeros(rings, np.bool_)
-    loop = np.arange(vertices.shape[0])
+    for ring in range(rings):
+        joined[ring] = False
+    for k in range(ring_ends[rings - 1]):
+        loop[k] = k
     for _ in range(1, rings):
         # Rightmost holes go first: what is to the right of a hole then belongs to the outline already.
         hole, rightmost = -1, -1
@@ -131,12 +174,12 @@ def _bridged(vertices: Array, ring_ends: Indices, outline: Indices) -> int:
     return count
 
 
-@kernel
+@leaf_kernel
 def _squared(vertices: Array, a: int, b: int) -> float:
     return (vertices[a, 0] - vertices[b, 0]) ** 2 + (vertices[a, 1] - vertices[b, 1]) ** 2
 
 
-@kernel
+@leaf_kernel
 def _doubled_area(vertices: Array, piece: Indices, m: int) -> float:
     area = 0.0
     for k in range(m):
@@ -145,7 +188,7 @@ def _doubled_area(vertices: Array, piece: Indices, m: int) -> float:
     return area
 
 
-@kernel
+@leaf_kernel
 def _spare_area(vertices: Array, piece: Indices, m: int, hull: Indices, count: int) -> float:
     """How much more a piece's hull covers than the piece and its allowance of filled notches."""
     covered = 0.0
@@ -155,7 +198,7 @@ def _spare_area(vertices: Array, piece: Indices, m: int, hull: Indices, count: i
     return float(0.5 * (covered - (1.0 + _FILLED_SHARE) * _doubled_area(vertices, piece, m)))
 
 
-@kernel
+@leaf_kernel
 def _hull_of_piece(vertices: Array, piece: Indices, m: int, hull: Indices) -> int:
     """Places in a piece of its hull's vertices, in its own order (gift wrapping from the lowest x); how many."""
     start = 0
@@ -181,7 +224,7 @@ def _hull_of_piece(vertices: Array, piece: Indices, m: int, hull: Indices) -> in
     return count
 
 
-@kernel
+@leaf_kernel
 def _deepest_notch(vertices: Array, piece: Indices, m: int, hull: Indices, corners: int, tolerance: float) -> int:
     """Place of the vertex furthest behind the hull edge that bridges its pocket; -1 where none is beyond tolerance."""
     deepest, notch = tolerance, -1
@@ -197,7 +240,7 @@ def _deepest_notch(vertices: Array, piece: Indices, m: int, hull: Indices, corne
     return notch
 
 
-@kernel
+@leaf_kernel
 def _best_cut(vertices: Array, piece: Indices, m: int, v: int) -> int:
     """Place of the vertex to cut to from notch v: near, opposite, best another notch; -1 where none is in sight."""
     best, least = -1, np.inf
@@ -216,7 +259,7 @@ def _best_cut(vertices: Array, piece: Indices, m: int, v: int) -> int:
     return best
 
 
-@kernel
+@leaf_kernel
 def _in_sight(vertices: Array, piece: Indices, m: int, v: int, w: int) -> bool:
     """Whether the segment between two places of a piece runs inside it without touching an edge or another vertex."""
     p, q = piece[v], piece[w]
@@ -225,7 +268,7 @@ def _in_sight(vertices: Array, piece: Indices, m: int, v: int, w: int) -> bool:
     return not _blocked(vertices, piece, m, p, q)
 
 
-@kernel
+@leaf_kernel
 def _blocked(vertices: Array, piece: Indices, m: int, p: int, q: int) -> bool:
     """Whether a piece's outline crosses or touches the open segment between two vertices."""
     length = np.sqrt(_squared(vertices, p, q))
@@ -243,7 +286,7 @@ def _blocked(vertices: Array, piece: Indices, m: int, p: int, q: int) -> bool:
     return False
 
 
-@kernel
+@leaf_kernel
 def _opens_to(vertices: Array, piece: Indices, m: int, v: int, p: int) -> bool:
     """Whether vertex p lies in the open wedge of the interior at a place of the piece, or on its sides at a bridge."""
     before, here, after = piece[(v - 1) % m], piece[v], piece[(v + 1) % m]

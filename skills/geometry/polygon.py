@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import kernel, leaf_kernel
 
 
-@kernel
+@leaf_kernel
 def signed_area(polygon: Array) -> float:
     """Area of a simple polygon, positive where it runs counter-clockwise [m^2]."""
     area = 0.0
@@ -25,7 +25,7 @@ def signed_area(polygon: Array) -> float:
     return 0.5 * area
 
 
-@kernel
+@leaf_kernel
 def centroid(polygon: Array) -> tuple[float, float]:
     """Centre of the area of a simple polygon of either direction."""
     area, x, y = 0.0, 0.0, 0.0
@@ -40,14 +40,14 @@ def centroid(polygon: Array) -> tuple[float, float]:
     return polygon[0, 0] + x / (3.0 * area), polygon[0, 1] + y / (3.0 * area)
 
 
-@kernel
+@leaf_kernel
 def turn(polygon: Array, a: int, b: int, c: int) -> float:
     """Twice the signed area of a triangle of vertices: positive where a, b, c turn left."""
     ux, uy = polygon[b, 0] - polygon[a, 0], polygon[b, 1] - polygon[a, 1]
     return ux * (polygon[c, 1] - polygon[a, 1]) - uy * (polygon[c, 0] - polygon[a, 0])
 
 
-@kernel
+@leaf_kernel
 def contains_point(polygon: Array, x: float, y: float) -> bool:
     """Whether a simple polygon of either direction holds a point; points on its edge may go either way."""
     inside = False
@@ -98,7 +98,7 @@ def clip_convex(subject: Array, clip: Array) -> Array:
     return clipped[:count]
 
 
-@kernel
+@leaf_kernel
 def _clip_once(polygon: Array, n: int, a: float, b: float, c: float, clipped: Array) -> int:
     """Write the part of the first n vertices' polygon where a x + b y <= c; the number of its vertices, or 0."""
     capacity = clipped.shape[0]

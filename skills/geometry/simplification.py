@@ -9,13 +9,14 @@ the corners are taken unfitted, and then with half the tolerance, down to the gi
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skills.geometry.polygon import contains_point, turn
 from skills.geometry.pose import Array
-from skills.kernels import kernel
+from skills.kernels import leaf_kernel
 
 Indices = NDArray[np.int64]
 
@@ -36,48 +37,64 @@ def simplify(polygon: Array, tolerance: float, holes: tuple[Array, ...] = ()) ->
     rings = [np.asarray(ring, dtype=np.float64) for ring in (polygon, *holes)]
     points = np.concatenate(rings)
     starts = np.cumsum([0, *map(len, rings)])
-    vertices, ends = simplify_rings(points, starts, np.full(len(points), tolerance))
+    vertices, ends = np.empty((len(points), 2)), np.empty(len(rings), np.int64)
+    simplify_rings(points, starts, np.full(len(points), tolerance), simplifying_room(len(points)), vertices, ends)
     found = [vertices[a:b] for a, b in pairwise((0, *ends.tolist()))]
     return tuple(ring for ring in found if len(ring)) if len(found[0]) else ()
 
 
-@kernel
-def simplify_rings(points: Array, starts: Indices, tolerances: Array) -> tuple[Array, Indices]:
+class SimplifyingRoom(NamedTuple):
+    """Room for work: the corners that are kept, stretches to look at, and the lines along two edges."""
+
+    corners: Indices
+    stack: Indices
+    lines: Array
+
+
+def simplifying_room(points: int) -> SimplifyingRoom:
+    """Room for rings of so many points in all."""
+    return SimplifyingRoom(np.empty(points, np.int64), np.empty(2 * points + 4, np.int64), np.empty((2, 4)))
+
+
+@leaf_kernel
+def simplify_rings(
+    points: Array, starts: Indices, tolerances: Array, room: SimplifyingRoom, vertices: Array, ends: Indices
+) -> int:
     """Simplify an outline and its holes together.
 
     Args:
         points: vertices of the outline, then of each hole, (N, 2).
         starts: where each ring begins in `points`, and the end of the last, (R + 1,).
         tolerances: how far the outline may stray near each vertex, (N,).
+        room: for at least N points.
+        vertices: out, of the rings, stacked, (N, 2).
+        ends: out, the end of each ring, (R,); rings that are thinner than the tolerance are empty.
 
     Returns:
-        Vertices of the rings, stacked, and the end of each, (R,); rings that are thinner than the tolerance are empty.
+        How many vertices are left.
     """
     rings = starts.shape[0] - 1
-    vertices = np.empty((points.shape[0], 2))
-    ends = np.empty(rings, np.int64)
-    corners = np.empty(points.shape[0], np.int64)
-    stack = np.empty(2 * points.shape[0] + 4, np.int64)
+    corners, stack, lines = room.corners, room.stack, room.lines
     scale = 1.0
     for _ in range(_HALVINGS):
         for fitted in (True, False):
-            written = 0
             for ring in range(rings):
-                first, n = starts[ring], starts[ring + 1] - starts[ring]
+                first, n, written = starts[ring], starts[ring + 1] - starts[ring], ends[ring - 1] if ring else starts[0]
                 count = _corners(points, first, n, tolerances, scale, corners, stack)
-                written = _write_ring(points, first, n, tolerances, scale, corners, count, fitted, vertices, written)
-                ends[ring] = written
-            if ends[0] == 0 or _all_simple(vertices, ends):
-                return vertices[:written], ends
+                ends[ring] = _write_ring(
+                    points, first, n, tolerances, scale, corners, count, fitted, lines, vertices, written
+                )
+            if ends[0] == 0 or _all_simple(vertices, ends, corners):
+                return ends[rings - 1]
         scale *= 0.5
     for i in range(points.shape[0]):
         vertices[i, 0], vertices[i, 1] = points[i, 0], points[i, 1]
     for ring in range(rings):
         ends[ring] = starts[ring + 1]
-    return vertices, ends
+    return ends[rings - 1]
 
 
-@kernel
+@leaf_kernel
 def _corners(
     points: Array, first: int, n: int, tolerances: Array, scale: float, corners: Indices, stack: Indices
 ) -> int:
@@ -108,7 +125,7 @@ def _corners(
     return count
 
 
-@kernel
+@leaf_kernel
 def _furthest_from(points: Array, first: int, n: int, place: int) -> int:
     best, most = place, 0.0
     for k in range(n):
@@ -119,7 +136,7 @@ def _furthest_from(points: Array, first: int, n: int, place: int) -> int:
     return best
 
 
-@kernel
+@leaf_kernel
 def _furthest_off(points: Array, first: int, n: int, tolerances: Array, scale: float, here: int, steps: int) -> int:
     """Steps to the vertex that strays most from the chord over a stretch, in tolerances; 0 where none strays."""
     x, y = points[first + here, 0], points[first + here, 1]
@@ -145,7 +162,7 @@ def _furthest_off(points: Array, first: int, n: int, tolerances: Array, scale: f
     return best
 
 
-@kernel
+@leaf_kernel
 def _write_ring(
     points: Array,
     first: int,
@@ -155,6 +172,7 @@ def _write_ring(
     corners: Indices,
     count: int,
     fitted: bool,
+    lines: Array,
     vertices: Array,
     written: int,
 ) -> int:
@@ -163,7 +181,7 @@ def _write_ring(
         return written
     begin = written
     # Each line is a point and a direction; that of the edge before the first corner comes first.
-    line, before = np.empty(4), np.empty(4)
+    before, line = lines[0], lines[1]
     if fitted:
         _fit_edge(points, first, n, tolerances, scale, corners[count - 1], corners[0], before)
     for k in range(count):
@@ -192,7 +210,7 @@ def _write_ring(
     return written if was * now > 0.0 else begin
 
 
-@kernel
+@leaf_kernel
 def _fit_edge(points: Array, first: int, n: int, tolerances: Array, scale: float, a: int, b: int, line: Array) -> None:
     """Write the least-squares line along a ring's stretch from one place to another: a point on it and a direction."""
     ax, ay = points[first + a, 0], points[first + a, 1]
@@ -232,11 +250,13 @@ def _fit_edge(points: Array, first: int, n: int, tolerances: Array, scale: float
     line[2], line[3] = ux - uy * slope, uy + ux * slope
 
 
-@kernel
-def _all_simple(vertices: Array, ends: Indices) -> bool:
-    """Whether no two edges of rings touch but at the vertex that they share, and all rings lie inside the first."""
+@leaf_kernel
+def _all_simple(vertices: Array, ends: Indices, following: Indices) -> bool:
+    """Whether no two edges of rings touch but at the vertex that they share, and all rings lie inside the first.
+
+    Following is room for the number of the vertex after each one.
+    """
     total = ends[ends.shape[0] - 1]
-    following = np.empty(total, np.int64)
     begin = 0
     for ring in range(ends.shape[0]):
         for v in range(begin, ends[ring]):
@@ -268,7 +288,7 @@ def _all_simple(vertices: Array, ends: Indices) -> bool:
     return True
 
 
-@kernel
+@leaf_kernel
 def _goes_on(vertices: Array, a: int, b: int, c: int) -> bool:
     """Whether the way from vertex b to c does not lead back towards a."""
     ux, uy = vertices[b, 0] - vertices[a, 0], vertices[b, 1] - vertices[a, 1]
