@@ -26,6 +26,11 @@ def prepare_runtime() -> None:
     os.environ.setdefault("NUMBA_CACHE_DIR", str(_cache_root() / f"kernels-{_source_hash()}"))
 
 
+def kernel_cache() -> Path:
+    """The folder of the compiled kernels."""
+    return Path(os.environ["NUMBA_CACHE_DIR"])
+
+
 def _keep_freed_memory() -> None:
     """Let the C library hold on to large blocks: pages fresh from the system cost more than what is written to them."""
     mallopt = getattr(ctypes.CDLL(None), "mallopt", None)  # other C libraries than glibc may have none

@@ -55,8 +55,10 @@ class DecomposingRoom(NamedTuple):
 
 
 def decomposing_room(vertices: int, rings: int) -> DecomposingRoom:
-    """Room for a polygon of so many vertices and rings; parts have no more corners than the stack and no more ends
-    than the sizes have places."""
+    """Room for a polygon of so many vertices and rings.
+
+    Its parts have no more corners than the stack has places, and no more ends than the sizes.
+    """
     # Every bridge and every cut repeats two vertices, and there are fewer cuts than vertices.
     capacity = vertices + 2 * rings
     return DecomposingRoom(

@@ -85,13 +85,13 @@ def simplify_rings(
                     points, first, n, tolerances, scale, corners, count, fitted, lines, vertices, written
                 )
             if ends[0] == 0 or _all_simple(vertices, ends, corners):
-                return ends[rings - 1]
+                return int(ends[rings - 1])
         scale *= 0.5
     for i in range(points.shape[0]):
         vertices[i, 0], vertices[i, 1] = points[i, 0], points[i, 1]
     for ring in range(rings):
         ends[ring] = starts[ring + 1]
-    return ends[rings - 1]
+    return int(ends[rings - 1])
 
 
 @leaf_kernel
