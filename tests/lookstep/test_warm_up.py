@@ -3,6 +3,8 @@
 import gc
 import sys
 
+from numba.core.dispatcher import Dispatcher
+
 from lookstep.configuration import load_configuration
 from lookstep.warm_up import warm_up, warm_up_beside
 from skills.kernels import kernel_cache
@@ -13,7 +15,7 @@ def compiled() -> dict[str, int]:
     found = {}
     for module in list(sys.modules.values()):
         for name, value in vars(module).items():
-            if getattr(value, "__module__", None) == module.__name__ and hasattr(value, "nopython_signatures"):
+            if isinstance(value, Dispatcher) and value.__module__ == module.__name__:
                 found[f"{module.__name__}.{name}"] = len(value.nopython_signatures)
     return found
 
