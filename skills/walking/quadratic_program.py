@@ -67,24 +67,18 @@ class OsqpSolver:
         # Column by column, as OSQP stores them: a transposed mask makes numpy walk in that order.
         self._P_mask = np.triu(P_pattern).T.copy()
         self._A_mask = np.ascontiguousarray(A_pattern.T)
-        n, m = P_pattern.shape[0], A_pattern.shape[0]
-        self._solver = osqp.OSQP()
-        self._solver.setup(
-            _with_pattern(np.triu(P_pattern)),
-            np.zeros(n),
-            _with_pattern(A_pattern),
-            np.full(m, -1.0),
-            np.full(m, 1.0),
-            verbose=False,
-            eps_abs=tolerance,
-            eps_rel=tolerance,
-            max_iter=max_iterations,
-            check_termination=check_every,
-            adaptive_rho=1,
-            adaptive_rho_interval=check_every,
-            warm_starting=True,
-            polishing=False,
-        )
+        self._settings = {
+            "eps_abs": tolerance,
+            "eps_rel": tolerance,
+            "max_iter": max_iterations,
+            "check_termination": check_every,
+            "adaptive_rho": 1,
+            "adaptive_rho_interval": check_every,
+            "warm_starting": True,
+            "polishing": False,
+            "verbose": False,
+        }
+        self._solver = self._fresh_solver()
 
     def solve(self, P: Array, q: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
         """Solve one program, starting from the solution of the one before."""
@@ -94,7 +88,17 @@ class OsqpSolver:
         status = _STATUS.get(result.info.status, QpStatus.FAILED)
         if not np.all(np.isfinite(x)):
             status = QpStatus.FAILED
+        if status is QpStatus.FAILED:
+            # Iterates and step size that are no numbers any more would spoil every program to come.
+            self._solver = self._fresh_solver()
         return QpSolution(x, status, int(result.info.iter))
+
+    def _fresh_solver(self) -> osqp.OSQP:
+        m, n = self._A_mask.T.shape
+        P, A = _with_pattern(self._P_mask.T), _with_pattern(self._A_mask.T)
+        solver = osqp.OSQP()
+        solver.setup(P, np.zeros(n), A, np.full(m, -1.0), np.full(m, 1.0), **self._settings)
+        return solver
 
 
 # OSQP's own words for how it ended; all others mean that there is no usable solution.
