@@ -92,6 +92,9 @@ class Balance:
         self.dcm = self._dcm_of(body)
         # Behind the end of its phase a plan waits: the next support is not there yet.
         self.dcm_reference, self.cop = self._plan.reference(min(self._since_plan, self._phase_end))
+        if self._gait.held > 0.0:
+            # A reference that rests has its CoP beneath itself; with that of lift-off an error would stay.
+            self.cop = self.dcm_reference
         upwards = self._height_acceleration(body)
         gain = 1.0 + self._parameters.dcm_gain / self.omega
         wanted = self.cop + gain * (self.dcm - self.dcm_reference)
