@@ -9,6 +9,7 @@ count and never by time, so that a run can be repeated to the last bit.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from enum import Enum
 from typing import Protocol
@@ -49,6 +50,10 @@ class QpSolver(Protocol):
     def solve(self, P: Array, q: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
         """Solve a program given by dense P (N, N), q (N,), A (M, N) and bounds (M,)."""
         ...
+
+
+# Of a program with the given patterns of P and A.
+MakeSolver = Callable[[Mask, Mask], QpSolver]
 
 
 class OsqpSolver:

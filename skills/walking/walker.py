@@ -20,7 +20,7 @@ from skills.walking.body_dynamics import BodyDynamics
 from skills.walking.contact import Contact
 from skills.walking.gait import Gait, toe_points
 from skills.walking.posture import nominal_posture, standing_configuration
-from skills.walking.quadratic_program import QpStatus
+from skills.walking.quadratic_program import MakeSolver, QpStatus
 from skills.walking.robot_model import RobotModel
 from skills.walking.swing_parameters import SwingParameters
 from skills.walking.uniform_spline import minimum_jerk_at
@@ -77,19 +77,22 @@ class Walker:
         model: the robot.
         stance: both soles at the start, where the robot stands.
         parameters: settings.
+        make_solver: of the whole body's quadratic program; OSQP by default.
 
     Raises:
         ValueError: where the robot cannot stand like that.
     """
 
-    def __init__(self, model: RobotModel, stance: Stance, parameters: WalkerParameters) -> None:
+    def __init__(
+        self, model: RobotModel, stance: Stance, parameters: WalkerParameters, make_solver: MakeSolver | None = None
+    ) -> None:
         walking, whole_body = parameters.walking, parameters.whole_body
         self._model, self._parameters, self._body_parameters = model, walking, whole_body
         self.start_configuration = standing_configuration(model, stance, walking)
         self._posture = nominal_posture(model, walking)[7:]
         self._posture_weights = _posture_weights(model, whole_body)
         self._body = BodyDynamics(model)
-        self._whole_body = WholeBodyController(model, whole_body)
+        self._whole_body = WholeBodyController(model, whole_body, make_solver)
         self._gait = Gait(stance, model.foothold_sole, walking, parameters.swing)
         self._balance = Balance(self._gait, model, walking, whole_body)
         self._contacts: dict[Side, Contact] = {}
@@ -132,6 +135,9 @@ class Walker:
         """The command of one control tick."""
         dt = measured.time - self._time
         self._time = measured.time
+        if not (np.all(np.isfinite(measured.q)) and np.all(np.isfinite(measured.v))):
+            self.fall("the measured state is not finite")
+            return self._whole_body.brake(self._body)
         self._body.update(measured.q, measured.v)
         self._gait.advance(dt)
         self._time_contacts(measured, dt)

@@ -16,7 +16,7 @@ limits.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,7 +25,7 @@ from skills.footsteps.footstep import Side
 from skills.geometry.pose import Array, Mask
 from skills.walking.body_dynamics import BodyDynamics
 from skills.walking.contact import CONTACT_POINTS, RAYS, Contact
-from skills.walking.quadratic_program import OsqpSolver, QpSolver, QpStatus
+from skills.walking.quadratic_program import MakeSolver, OsqpSolver, QpSolver, QpStatus
 from skills.walking.robot_model import RobotModel
 from skills.walking.whole_body_parameters import WholeBodyParameters
 
@@ -96,7 +96,7 @@ class BodyCommand:
 class WholeBodyController:
     """Turns tasks into torques for one robot; not for use by two threads at once.
 
-    Where the program fails, the torques of the tick before are kept and joints are braked.
+    Where the program fails, the robot brakes.
 
     Args:
         model: the robot.
@@ -108,7 +108,7 @@ class WholeBodyController:
         self,
         model: RobotModel,
         parameters: WholeBodyParameters,
-        make_solver: Callable[[Mask, Mask], QpSolver] | None = None,
+        make_solver: MakeSolver | None = None,
     ) -> None:
         self._model, self._parameters = model, parameters
         n = self._joints = len(model.joint_names)
@@ -130,8 +130,8 @@ class WholeBodyController:
         self._write_objective(body, tasks)
         self._write_constraints(body, tasks)
         solution = self._solver.solve(self._P, self._q, self._A, self._lower, self._upper)
-        if solution.status is QpStatus.FAILED:
-            return self._brake(body, tasks)
+        if solution.status is QpStatus.FAILED or not np.all(np.isfinite(solution.x)):
+            return self.brake(body)
         acceleration = solution.x[: self._nv]
         rho = np.maximum(solution.x[self._nv :], 0.0)
         rows = slice(6, self._nv)
@@ -143,7 +143,8 @@ class WholeBodyController:
         }
         return BodyCommand(self._torques, acceleration, wrenches, solution.status, solution.iterations)
 
-    def _brake(self, body: BodyDynamics, tasks: BodyTasks) -> BodyCommand:
+    def brake(self, body: BodyDynamics) -> BodyCommand:
+        """The torques of the tick before, less what brakes the joints: for a tick without a solution."""
         torques = np.clip(self._torques - self._damping * body.v[6:], -self._effort, self._effort)
         still = -self._parameters.stance_damping * body.v
         return BodyCommand(torques, still, {side: np.zeros(6) for side in Side}, QpStatus.FAILED, 0)
