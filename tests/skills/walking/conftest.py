@@ -3,10 +3,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from perfect_body import PerfectBody
 
 from skills.footsteps.footstep import Footstep, Side, Stance
-from skills.geometry.pose import Pose
-from skills.walking import RobotModel
+from skills.geometry.pose import Array, Pose
+from skills.walking import RobotModel, Walker, WalkerParameters, WalkingParameters
+from skills.walking.quadratic_program import MakeSolver
 
 MJCF = Path(__file__).parents[3] / "sim_envs" / "robot" / "atlas_class.xml"
 WIDTH = 0.24
@@ -64,5 +66,20 @@ def make_steps(make_step: Callable[..., Footstep]) -> Callable[..., tuple[Footst
             steps.append(make_step(first_id + i, side, pose, timing))
             side = side.opposite
         return tuple(steps)
+
+    return make
+
+
+@pytest.fixture
+def make_body(model: RobotModel, stance: Stance) -> Callable[..., PerfectBody]:
+    """A walking robot that moves as it commands, on level ground unless told otherwise."""
+
+    def make(
+        ground: Callable[[Array], Array] = lambda points: np.zeros(len(points)),
+        make_solver: MakeSolver | None = None,
+        **walking: float,
+    ) -> PerfectBody:
+        parameters = WalkerParameters(walking=WalkingParameters(**walking))
+        return PerfectBody(model, Walker(model, stance, parameters, make_solver), ground)
 
     return make
