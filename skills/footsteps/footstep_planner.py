@@ -205,4 +205,4 @@ class WayPlanner:
 
     def _saved(self, kept: tuple[Foothold, ...]) -> float:
         """What kept steps save of the estimated cost to go."""
-        return self._rules.to_go(kept[:0]) - self._rules.to_go(kept) if kept else 0.0
+        return self._rules.left(kept[:0]) - self._rules.left(kept) if kept else 0.0

@@ -46,7 +46,7 @@ def search_footsteps(
     rejections, state = space.rejections, space.state[0]
     if not state.begun:
         root, swing = _put_feet(limits, goal, lattice, space.path, space.field, headings, feet, nodes)
-        state.begun, state.best, state.start_to_go = 1, root, nodes[root].to_go
+        state.begun, state.best, state.start_left = 1, root, nodes[root].left
         state.size = push(open_list, 0, 0.0, 0.0, root, swing)
     size, best = state.size, state.best
     outcome = EXHAUSTED
@@ -70,11 +70,11 @@ def search_footsteps(
             if cost >= 0.0:
                 estimate = cost + limits.heuristic_weight * there.to_go
                 size = push(open_list, size, estimate, cost, node, stance)
-                if there.to_go < nodes[best].to_go:
+                if there.left < nodes[best].left:
                     best = node
             continue
         if square or (there.arrived and not goal.final and there.depth >= limits.minimum_steps):
-            return REACHED, node, stance, cost, state.start_to_go - there.to_go, open_list
+            return REACHED, node, stance, cost, state.start_left - there.left, open_list
         if state.expansions >= max_expansions:
             outcome = OUT_OF_BUDGET
             break
@@ -86,7 +86,7 @@ def search_footsteps(
             space.log[space.logged[0] - 1].reason = EXPANDED
         open_list, size, best = _expand(space, open_list, size, best, node)
     state.size, state.best = size, best
-    return outcome, best, nodes[best].parent, nodes[best].cost, state.start_to_go - nodes[best].to_go, open_list
+    return outcome, best, nodes[best].parent, nodes[best].cost, state.start_left - nodes[best].left, open_list
 
 
 @kernel
@@ -193,7 +193,7 @@ def _expand(space: SearchSpace, open_list: Records, size: int, best: int, stance
             if cost < 0.0:
                 continue
             least = cost
-            if there.to_go < nodes[best].to_go:
+            if there.left < nodes[best].left:
                 best = node
         size = push(open_list, size, least + limits.heuristic_weight * there.to_go, cost, node, stance)
     return open_list, size, best

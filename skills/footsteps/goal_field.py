@@ -19,7 +19,8 @@ from skills.kernels import kernel
 
 # Ground that a foot may stand on: most of a circle as wide as the foot lies flush within this height [m].
 _FLUSH = 0.03
-_CIRCLE, _LEAST_FLUSH = 8, 6
+_LEAST_FLUSH = 6
+_CIRCLE = np.array([(np.cos(angle), np.sin(angle)) for angle in np.linspace(0.0, 2 * np.pi, 8, endpoint=False)])
 # How far ahead of a place its heading looks [m].
 _LOOK_AHEAD = 0.35
 # Along walls, and so far beside them [m], a way costs this many times more: there is less room to step.
@@ -58,7 +59,7 @@ def spread_field(
         closed[node] = True
         floor, iy, ix = node // (ny * nx), node // nx % ny, node % nx
         z, dearer = field[floor, iy, ix, 2], field[floor, iy, ix, 1]
-        away = np.hypot((ix + 0.5) * cell - start[0], (iy + 0.5) * cell - start[1])
+        away = np.sqrt(((ix + 0.5) * cell - start[0]) ** 2 + ((iy + 0.5) * cell - start[1]) ** 2)
         if away < closest and abs(z - start[2]) < limits.max_step_height:
             closest, at_closest = away, cost
             if away < 1.5 * cell:
@@ -135,9 +136,8 @@ def _find_ground(raster: Raster, limits: Records, field: Array) -> None:
 def _flush(raster: Raster, limits: Records, x: float, y: float, z: float, a: float, b: float) -> bool:
     """Whether most of a circle as wide as a foot lies flush around a point, and nothing rises on it."""
     scale, flush = 1.0 / raster.resolution, 0
-    for k in range(_CIRCLE):
-        dx = limits.half_width * np.cos(2 * np.pi * k / _CIRCLE)
-        dy = limits.half_width * np.sin(2 * np.pi * k / _CIRCLE)
+    for k in range(_CIRCLE.shape[0]):
+        dx, dy = limits.half_width * _CIRCLE[k, 0], limits.half_width * _CIRCLE[k, 1]
         px, py = x + dx, y + dy
         if px < 0.0 or py < 0.0 or py * scale >= raster.cells.shape[1] or px * scale >= raster.cells.shape[2]:
             continue
@@ -173,7 +173,7 @@ def _block_by_walls(raster: Raster, limits: Records, field: Array) -> None:
             iy, ix = int(y / cell), int(x / cell)
             for j in range(max(iy - span, 0), min(iy + span, field.shape[1] - 1) + 1):
                 for i in range(max(ix - span, 0), min(ix + span, field.shape[2] - 1) + 1):
-                    away = np.hypot((i + 0.5) * cell - x, (j + 0.5) * cell - y)
+                    away = np.sqrt(((i + 0.5) * cell - x) ** 2 + ((j + 0.5) * cell - y) ** 2)
                     for k in range(field.shape[0]):
                         z = field[k, j, i, 2]
                         if walls[wy, wx, 0] <= z + limits.body_top and walls[wy, wx, 1] >= z + limits.body_base:
@@ -242,10 +242,11 @@ def _find_headings(cell: float, field: Array, parents: NDArray[np.int64]) -> Non
 def look_up(limits: Records, field: Array, x: float, y: float, z: float) -> tuple[float, float]:
     """Cost to the goal and heading at a point x, y from the corner near ground of height z; infinite off the field."""
     cell, best, heading = limits.field_cell, np.inf, np.nan
+    per_metre = limits.step_cost / limits.stride
     iy, ix = int(np.floor(y / cell)), int(np.floor(x / cell))
     for j in range(max(iy - 1, 0), min(iy + 1, field.shape[1] - 1) + 1):
         for i in range(max(ix - 1, 0), min(ix + 1, field.shape[2] - 1) + 1):
-            away = limits.step_cost / limits.stride * np.hypot((i + 0.5) * cell - x, (j + 0.5) * cell - y)
+            away = per_metre * np.sqrt(((i + 0.5) * cell - x) ** 2 + ((j + 0.5) * cell - y) ** 2)
             for k in range(field.shape[0]):
                 cost = field[k, j, i, 0] + away
                 if cost < best and abs(field[k, j, i, 2] - z) < 0.5 * FLOOR_HEIGHT:

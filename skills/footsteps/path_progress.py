@@ -38,6 +38,8 @@ def judge(
         _judge_by_field(limits, goal, path, field, x, y, body_x, body_y, z, yaw, node)
     else:
         _judge_by_path(limits, goal, path, body_x, body_y, yaw, node)
+    # Of two feet that are about as near the goal, one that stands there is a step ahead.
+    node.to_go = node.left - limits.step_cost if goal.final and node.arrived else node.left
 
 
 @kernel
@@ -60,7 +62,7 @@ def _judge_by_field(
     if to_go == np.inf:
         # Between two footholds there may be no ground under the body.
         to_go, way = look_up(limits, field, x, y, z)
-    remaining = np.hypot(body_x - path[last, 0], body_y - path[last, 1])
+    remaining = np.sqrt((body_x - path[last, 0]) ** 2 + (body_y - path[last, 1]) ** 2)
     turn = abs(_wrap(yaw - path[last, 2]))
     level = abs(z - goal.z) <= limits.goal_height_tolerance
     off, turned = remaining / limits.goal_tolerance, turn / limits.goal_yaw_tolerance
@@ -70,9 +72,9 @@ def _judge_by_field(
     node.off_path_cost = limits.yaw_cost * abs(_wrap(yaw - way))
     spared = limits.step_cost * limits.goal_tolerance / limits.stride
     turns = limits.step_cost * (turn - limits.goal_yaw_tolerance) / limits.turn
-    node.to_go = max(to_go - spared, turns, 0.0)
+    node.left = max(to_go - spared, turns, 0.0)
     if node.arrived:
-        node.to_go += limits.step_cost * _MISS * (max(off - 1.0, 0.0) + max(turned - 1.0, 0.0))
+        node.left += limits.step_cost * _MISS * (max(off - 1.0, 0.0) + max(turned - 1.0, 0.0))
 
 
 @kernel
@@ -101,7 +103,7 @@ def _judge_by_path(
     turn = abs(_wrap(yaw - path[last, 2]))
     if goal.final:
         near, aligned = limits.goal_tolerance, limits.goal_yaw_tolerance
-        remaining = np.hypot(body_x - path[last, 0], body_y - path[last, 1])
+        remaining = np.sqrt((body_x - path[last, 0]) ** 2 + (body_y - path[last, 1]) ** 2)
         node.arrived = remaining <= near and turn <= aligned
     else:
         near, aligned = limits.along_tolerance, limits.heading_tolerance
@@ -110,7 +112,7 @@ def _judge_by_path(
         node.arrived = along * along + across * across <= 1.0 and turn <= aligned
     node.off_path_cost = limits.path_cost * off_path + limits.yaw_cost * abs(off_heading)
     # What the tolerances spare is left out, so that the estimate never exceeds the true cost.
-    node.to_go = limits.step_cost * max((remaining - near) / limits.stride, (turn - aligned) / limits.turn, 0.0)
+    node.left = limits.step_cost * max((remaining - near) / limits.stride, (turn - aligned) / limits.turn, 0.0)
 
 
 @kernel

@@ -31,6 +31,7 @@ class Raster(NamedTuple):
         resolution: cell size [m].
         walls: lowest and highest point of walls, (rows, columns, 2), in larger cells; empty where there are no walls.
         wall_resolution: their size [m].
+        wall_tops: highest point of a wall near each place, (rows, columns), see `spread_tops`; empty likewise.
         top: no ground is higher [m].
     """
 
@@ -39,6 +40,7 @@ class Raster(NamedTuple):
     resolution: float
     walls: NDArray[np.float32]
     wall_resolution: float
+    wall_tops: NDArray[np.float32]
     top: float
 
 

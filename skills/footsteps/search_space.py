@@ -49,10 +49,11 @@ EDGE_LOG = np.dtype(
 )
 # Instead of a reason: the node was expanded, or opened.
 EXPANDED, OPENED = range(2)
-# A foot on the lattice: cost of the way there, estimated cost to go, what being off the path costs, and the way back.
+# A foot on the lattice: cost of the way there, what progress may still take off the cost to go, the estimate of that
+# cost, what being off the path costs, and the way back.
 NODE = np.dtype(
     [
-        *((name, np.float64) for name in ("cost", "to_go", "off_path_cost")),
+        *((name, np.float64) for name in ("cost", "left", "to_go", "off_path_cost")),
         *((name, np.int64) for name in ("parent", "depth")),
         *((name, np.uint8) for name in ("status", "arrived")),
     ]
@@ -60,7 +61,7 @@ NODE = np.dtype(
 UNKNOWN, JUDGED, OPEN, CLOSED = range(4)
 # Where a search stands.
 SEARCH_STATE = np.dtype(
-    [*((name, np.int64) for name in ("begun", "expansions", "size", "best")), ("start_to_go", np.float64)]
+    [*((name, np.int64) for name in ("begun", "expansions", "size", "best")), ("start_left", np.float64)]
 )
 # What the ground is under a foot of either side: outcome of the snap, height, slopes, supported share.
 GROUND = np.dtype([*((name, np.float64) for name in ("z", "a", "b", "share")), ("outcome", np.uint8)])

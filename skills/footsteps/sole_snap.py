@@ -22,7 +22,7 @@ from skills.footsteps.rejections import (
     TOO_SMALL,
     TOO_STEEP,
 )
-from skills.footsteps.walls import wall_top
+from skills.footsteps.walls import near_top, wall_top
 from skills.geometry.pose import Array, readonly
 from skills.kernels import kernel
 
@@ -65,7 +65,6 @@ def snap_sole(
     cells, planes = raster.cells, raster.planes
     floors, ny, nx = cells.shape
     scale = 1.0 / raster.resolution
-    walled = raster.walls.shape[0] > 0
     if x < 0.0 or y < 0.0 or x * scale >= nx or y * scale >= ny:
         return NO_GROUND
     ground = cells[floor, int(y * scale), int(x * scale)]
@@ -75,6 +74,7 @@ def snap_sole(
     out[0], out[1], out[2], out[3] = a * x + b * y + c, a, b, 1.0
     if a * a + b * b > limits.tilt_tangent * limits.tilt_tangent:
         return TOO_STEEP
+    walled = near_top(raster, x, y) > out[0] + limits.cliff_height
     cos, sin = np.cos(yaw), np.sin(yaw)
     under, close, cliff, shin = int(limits.under), int(limits.close), int(limits.cliff), int(limits.shin)
     unsupported = 0
@@ -129,13 +129,13 @@ def sweep_soles(
     planes = raster.planes
     floors, ny, nx = raster.cells.shape
     scale = 1.0 / raster.resolution
-    walled = raster.walls.shape[0] > 0
     along = int(np.ceil(2 * half_length / SAMPLE_SPACING))
     across = int(np.ceil(2 * half_width / SAMPLE_SPACING))
     for n in range(soles.shape[0]):
         x, y = soles[n, 0] - corner[0], soles[n, 1] - corner[1]
         cos, sin = np.cos(soles[n, 3]), np.sin(soles[n, 3])
         smallest = np.inf
+        walled = near_top(raster, x, y) > -np.inf
         for i in range(along + 1):
             u = half_length * (2 * i / along - 1)
             for j in range(across + 1):

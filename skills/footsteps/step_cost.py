@@ -24,7 +24,7 @@ from skills.footsteps.rejections import (
     UPHILL,
     WALL_UNDER,
 )
-from skills.footsteps.walls import body_clear, wall_on_way, way_clear
+from skills.footsteps.walls import body_clear, near_top, wall_on_way, way_clear
 from skills.kernels import kernel
 
 
@@ -38,8 +38,9 @@ def step_cost(
     length = stand.cos * (x - stand.x) + stand.sin * (y - stand.y)
     width = abs(stand.cos * (y - stand.y) - stand.sin * (x - stand.x))
     rise = ground.z - stand.z
-    reach = np.hypot(length, width - limits.ideal_width)
-    moved = np.hypot(x - stand.swing_x, y - stand.swing_y)
+    off_width = width - limits.ideal_width
+    reach = np.sqrt(length * length + off_width * off_width)
+    moved = np.sqrt((x - stand.swing_x) ** 2 + (y - stand.swing_y) ** 2)
     if rise > limits.max_step_height + ROUNDING:
         return -float(TOO_HIGH)
     if rise < -limits.max_step_height - ROUNDING:
@@ -62,8 +63,8 @@ def step_cost(
     return (
         limits.step_cost
         + limits.height_cost * abs(rise)
-        + limits.tilt_cost * np.hypot(ground.a, ground.b)
-        + limits.width_cost * abs(width - limits.ideal_width)
+        + limits.tilt_cost * np.sqrt(ground.a * ground.a + ground.b * ground.b)
+        + limits.width_cost * abs(off_width)
         + limits.share_cost * (1.0 - ground.share)
     )
 
@@ -75,16 +76,21 @@ def _hindered(raster: Raster, limits: Records, stand: Records, x: float, y: floa
     The body is midway between the feet and looks where the stance foot does.
     """
     body_x, body_y, height = 0.5 * (x + stand.x), 0.5 * (y + stand.y), 0.5 * (z + stand.z)
-    walled = raster.walls.shape[0] > 0
-    if not walled and raster.top < height + limits.body_base:
+    if raster.walls.shape[0] == 0 and raster.top < height + limits.body_base:
         return 0
-    if walled and wall_on_way(raster, stand.swing_x, stand.swing_y, x, y, max(z, stand.swing_z), limits.step_over):
+    higher = max(z, stand.swing_z)
+    # Looks at the ends and the middle of the swing reach over all of it.
+    near = max(near_top(raster, x, y), near_top(raster, stand.swing_x, stand.swing_y))
+    near = max(near, near_top(raster, 0.5 * (x + stand.swing_x), 0.5 * (y + stand.swing_y)))
+    high = near > higher + limits.step_over
+    if high and wall_on_way(raster, stand.swing_x, stand.swing_y, x, y, higher, limits.step_over):
         return WALL_UNDER
     before_x, before_y = 0.5 * (stand.swing_x + stand.x), 0.5 * (stand.swing_y + stand.y)
     for part in (1.0, 0.5):
         middle_x, middle_y = before_x + part * (body_x - before_x), before_y + part * (body_y - before_y)
         if not body_clear(raster, limits, middle_x, middle_y, height, stand.cos, stand.sin):
             return BODY_AT
-    if walled and not way_clear(raster, limits, before_x, before_y, body_x, body_y, height):
+    high = near_top(raster, body_x, body_y) >= height + limits.body_base
+    if high and not way_clear(raster, limits, before_x, before_y, body_x, body_y, height):
         return BODY_WAY
     return 0

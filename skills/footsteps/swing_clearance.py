@@ -17,6 +17,9 @@ from skills.footsteps.footstep_parameters import FootstepParameters
 from skills.footsteps.terrain import Terrain, slopes
 from skills.geometry.pose import Array, Pose, readonly, wrap_angle
 
+# Distances between the soles that are held over the ground, in cells: a sole is many of them long.
+_CROSSING, _LEG = 4.0, 2.0
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class SwingClearance:
@@ -37,7 +40,7 @@ def swing_clearance(
     """Find the way of a foot between two footholds that clears the ground by the parameters' margin."""
     start, end = T_world_start.p, T_world_end.p
     higher = max(start[2], end[2])
-    crossing = _crossing(T_world_start, T_world_end, higher, 2.0 * terrain.raster.resolution)
+    crossing = _crossing(T_world_start, T_world_end, higher, _CROSSING * terrain.raster.resolution)
     ground = higher - _clearances(terrain, crossing, parameters, parameters.swing_margin)
     apex = max(float(np.max(ground)) + parameters.swing_clearance, higher + parameters.swing_height)
     travelled = np.linalg.norm(crossing[:, :2] - start[:2], axis=1)
@@ -59,7 +62,7 @@ def _corner(
     leads = () if vertical else (parameters.swing_lead, 0.5 * parameters.swing_lead)
     for lead in leads:
         corner = np.array((*(near[:2] + lead * (far[:2] - near[:2])), apex))
-        leg = _leg(T_world_near, T_world_far, corner, terrain.raster.resolution)
+        leg = _leg(T_world_near, T_world_far, corner, _LEG * terrain.raster.resolution)
         risen = leg[:, 2] - near[2]
         needed = np.minimum(parameters.swing_leg_clearance, 0.5 * risen - parameters.ground_above)
         if np.all(_clearances(terrain, leg, parameters, 0.0) >= needed):

@@ -19,7 +19,7 @@ from skills.footsteps.plane_raster import Raster, close_seams, draw_regions, pla
 from skills.footsteps.rejections import NO_GROUND, REASONS
 from skills.footsteps.sole_snap import SNAP_LIMITS, SoleSamples, snap_sole, sweep_soles
 from skills.footsteps.supported_polygon import supported_polygon
-from skills.footsteps.walls import draw_walls
+from skills.footsteps.walls import draw_walls, spread_tops
 from skills.geometry.pose import Array, Pose, readonly
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 
@@ -204,9 +204,10 @@ def region_terrain(
         width, step = float(parameters.seam_width), float(parameters.seam_step)
         cells = np.stack([close_seams(floor, planes, resolution, width, step) for floor in cells])
     walls = _draw_walls(steep, low, float(parameters.wall_resolution), np.asarray(high_world) - low)
-    for array in (cells, planes, walls):
+    tops = spread_tops(walls, float(parameters.wall_resolution)) if len(walls) else np.zeros((0, 0), dtype=np.float32)
+    for array in (cells, planes, walls, tops):
         array.flags.writeable = False
-    raster = Raster(cells, planes, resolution, walls, float(parameters.wall_resolution), top)
+    raster = Raster(cells, planes, resolution, walls, float(parameters.wall_resolution), tops, top)
     return RegionTerrain(regions.frame_id, low, raster, tuple(ground))
 
 

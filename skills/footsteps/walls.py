@@ -12,6 +12,10 @@ from skills.kernels import kernel
 
 # Samples of a wall per cell, so that no cell on it is missed.
 _DENSITY = 1.5
+# Nobody who looks for a wall looks farther than this from a body's middle, a sole's, or a third of a swing [m].
+NEAR = 0.3
+# Cells of walls in one cell of the map that tells how high they are nearby.
+_COARSE = 4
 # Where the body feels for high ground [m].
 _GROUND_SPACING = 0.04
 
@@ -59,6 +63,42 @@ def draw_walls(
 
 
 @kernel
+def spread_tops(walls: NDArray[np.float32], resolution: float) -> NDArray[np.float32]:
+    """The highest point of walls that come within `NEAR` of any point of a large cell; -inf where none does.
+
+    It tells in one look that no wall is near, or none that is high enough to matter.
+    """
+    ny, nx = walls.shape[0] // _COARSE + 1, walls.shape[1] // _COARSE + 1
+    highest = np.full((ny, nx), np.float32(-np.inf))
+    for iy in range(walls.shape[0]):
+        for ix in range(walls.shape[1]):
+            j, i = iy // _COARSE, ix // _COARSE
+            highest[j, i] = max(highest[j, i], walls[iy, ix, 1])
+    span = int(np.ceil(NEAR / (_COARSE * resolution)))
+    along, tops = np.full_like(highest, np.float32(-np.inf)), np.full_like(highest, np.float32(-np.inf))
+    for j in range(ny):
+        for i in range(nx):
+            for k in range(max(i - span, 0), min(i + span, nx - 1) + 1):
+                along[j, i] = max(along[j, i], highest[j, k])
+    for j in range(ny):
+        for i in range(nx):
+            for k in range(max(j - span, 0), min(j + span, ny - 1) + 1):
+                tops[j, i] = max(tops[j, i], along[k, i])
+    return tops
+
+
+@kernel
+def near_top(raster: Raster, x: float, y: float) -> float:
+    """Highest point of walls within `NEAR` of x, y; -inf where there is none."""
+    scale = 1.0 / (_COARSE * raster.wall_resolution)
+    tops = raster.wall_tops
+    if tops.shape[0] == 0:
+        return -np.inf
+    iy, ix = int(max(y * scale, 0.0)), int(max(x * scale, 0.0))
+    return tops[min(iy, tops.shape[0] - 1), min(ix, tops.shape[1] - 1)]
+
+
+@kernel
 def _cross(vertices: Array, begin: int, end: int, u: float, crossings: Array) -> int:
     """Where an outline crosses a line u = constant, in order; how often."""
     count = 0
@@ -91,7 +131,7 @@ def body_clear(raster: Raster, limits: Records, x: float, y: float, z: float, co
     """Whether a body over feet at height z, its middle at x, y, touches no wall and no high ground."""
     if raster.top > z + limits.body_base and not _clear_of_ground(raster, limits, x, y, z, cos, sin):
         return False
-    if raster.walls.shape[0] == 0:
+    if near_top(raster, x, y) < z + limits.body_base:
         return True
     spacing = raster.wall_resolution / _DENSITY
     along, across = int(limits.body_depth / spacing) + 1, int(limits.body_width / spacing) + 1

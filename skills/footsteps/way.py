@@ -83,14 +83,14 @@ class WayRules:
         checked = self._check(footholds, first, min(last, len(footholds) - 1))
         return REASONS[int(-checked)] if checked < 0.0 else ""
 
-    def to_go(self, footholds: list[Foothold] | tuple[Foothold, ...]) -> float:
-        """The estimated cost to go from the end of a way."""
+    def left(self, footholds: list[Foothold] | tuple[Foothold, ...]) -> float:
+        """The part of the cost to go from the end of a way that progress takes off."""
         x, y, z, yaw, *_ = self._rows(footholds)[-1]
         sign = self._sign if len(footholds) % 2 else -self._sign
         _, limits, goal, path, field = self._request
         node = self._scratch[2]
         judge(limits, goal, path, field, x, y, z, np.array((yaw, np.cos(yaw), np.sin(yaw))), sign, node)
-        return float(node["to_go"])
+        return float(node["left"])
 
     def _check(self, footholds: list[Foothold] | tuple[Foothold, ...], first: int, last: int) -> float:
         rows = np.array(self._rows(footholds))

@@ -4,16 +4,20 @@ import dataclasses
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from plan_judge import PlanJudge
 from random_scenes import TERRAIN, Scene, random_scene
 
-from skills.footsteps import FootstepPlan, Side, plan_footsteps, terrain_ahead
+from skills.footsteps import FootstepPlan, PlanOutcome, Side, plan_footsteps, terrain_ahead
 from skills.geometry.pose import Pose
 
+REACHED = (PlanOutcome.GOAL_REACHED, PlanOutcome.ENOUGH_STEPS)
 
-def planned(scene: Scene) -> FootstepPlan:
-    terrain = terrain_ahead(scene.regions, scene.stance, scene.sub_goal, scene.parameters, TERRAIN)
-    return plan_footsteps(terrain, scene.stance, Side.LEFT, scene.sub_goal, scene.parameters)
+
+def planned(scene: Scene, **options: float) -> FootstepPlan:
+    parameters = dataclasses.replace(scene.parameters, **options)
+    terrain = terrain_ahead(scene.regions, scene.stance, scene.sub_goal, parameters, TERRAIN)
+    return plan_footsteps(terrain, scene.stance, Side.LEFT, scene.sub_goal, parameters)
 
 
 def judged(scene: Scene, plan: FootstepPlan) -> list[str]:
@@ -33,6 +37,38 @@ def test_plans_on_random_ground_keep_every_limit(seed: int):
 def test_a_thousand_plans_on_random_ground_keep_every_limit(seed: int):
     scene = random_scene(seed)
     assert judged(scene, planned(scene)) == []
+
+
+def dearer(seeds: range, most: int) -> tuple[NDArray[np.float64], int]:
+    """Costs over those of the best plans on the lattice, where there are such; how many the budget did not find."""
+    ratios, missed = [], 0
+    for seed in seeds:
+        scene = random_scene(seed)
+        plan, best = planned(scene), planned(scene, heuristic_weight=1.0, max_expansions=most)
+        if best.outcome not in REACHED:
+            assert plan.outcome not in REACHED or best.expansions >= most, (seed, plan.outcome, best.reason)
+        elif plan.outcome in REACHED:
+            ratios.append(plan.cost / best.cost if best.cost > 0.0 else 1.0)
+        else:
+            assert plan.expansions >= scene.parameters.max_expansions, (seed, plan.reason)
+            missed += 1
+    return np.array(ratios), missed
+
+
+def test_plans_cost_little_more_than_the_best_on_random_ground():
+    ratios, missed = dearer(range(12), 3000)
+    assert len(ratios) >= 6 and missed <= 1
+    assert np.median(ratios) < 1.05 and np.max(ratios) < 1.25
+
+
+@pytest.mark.sweep
+def test_a_thousand_plans_cost_little_more_than_the_best():
+    ratios, missed = dearer(range(1000), 100_000)
+    print(f"{len(ratios)} of 1000 reach the sub-goal, {missed} not in 3000 expansions; costs over the best,")
+    print("median, 95 %, most:", *np.percentile(ratios, (50, 95, 100)).round(4))
+    assert missed < 150
+    assert np.median(ratios) < 1.05
+    assert np.percentile(ratios, 95) < 1.15
 
 
 def test_random_scenes_can_mostly_be_walked():
