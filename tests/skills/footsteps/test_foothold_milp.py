@@ -5,6 +5,8 @@ tightened by what rounding moves can be rounded to the lattice: a plan of the ti
 is found must be a plan of the full one. Only what lies between is left to the lattice.
 """
 
+import dataclasses
+
 import numpy as np
 import pytest
 from foothold_milp import FootholdMilp, Stone
@@ -24,6 +26,7 @@ PARAMETERS = FootstepParameters(
     reach_up_height=0.25,
     reach_down_height=0.25,
     tilt_cost=0.0,
+    wiggle_margin=0.0,
     lattice=0.02,
     max_expansions=100000,
 )
@@ -45,19 +48,37 @@ def scene(seed: int) -> tuple[Stone, ...]:
     return tuple(stones)
 
 
+STANCE = standing()
+GOAL = sub_goal(straight_path(np.zeros(3), np.array((3.0, 0.0, 0.0))), STANCE, SubGoalParameters())
+
+
+def searched(stones: tuple[Stone, ...], lattice: float, resolution: float) -> float:
+    """Cost of the search's plan; infinite where it has none of so many steps."""
+    parameters = dataclasses.replace(PARAMETERS, lattice=lattice)
+    regions = region_map(*(rectangle((s.x, s.y, s.z), size=(s.length, s.width)) for s in stones))
+    terrain = terrain_ahead(regions, STANCE, GOAL, parameters, TerrainParameters(resolution=resolution))
+    plan = plan_footsteps(terrain, STANCE, Side.LEFT, GOAL, parameters)
+    return plan.cost if plan.outcome is PlanOutcome.ENOUGH_STEPS and len(plan.steps) <= MOST_STEPS else np.inf
+
+
 def compare(seed: int) -> tuple[float, float, float]:
     """Cost of the full program, of the search, and of the tightened program; infinite where there is no plan."""
-    stones, stance = scene(seed), standing()
-    goal = sub_goal(straight_path(np.zeros(3), np.array((3.0, 0.0, 0.0))), stance, SubGoalParameters())
-    regions = region_map(*(rectangle((s.x, s.y, s.z), size=(s.length, s.width)) for s in stones))
-    terrain = terrain_ahead(regions, stance, goal, PARAMETERS, TerrainParameters())
-    plan = plan_footsteps(terrain, stance, Side.LEFT, goal, PARAMETERS)
-    found = plan.outcome is PlanOutcome.ENOUGH_STEPS and len(plan.steps) <= MOST_STEPS
-    x = goal.search_arc_length
+    stones, x = scene(seed), GOAL.search_arc_length
     full = FootholdMilp(stones, PARAMETERS, x, edge=-RASTER)
     tight = FootholdMilp(stones, PARAMETERS, x, shrink=0.5 * PARAMETERS.lattice, edge=RASTER)
-    costs = [program.cost(stance, Side.LEFT, MOST_STEPS) for program in (full, tight)]
-    return costs[0], plan.cost if found else np.inf, costs[1]
+    costs = [program.cost(STANCE, Side.LEFT, MOST_STEPS) for program in (full, tight)]
+    return costs[0], searched(stones, PARAMETERS.lattice, 0.01), costs[1]
+
+
+def explanation(seed: int) -> str:
+    """Why the program has a plan where the search has none: what has to be finer, or larger, for both to agree."""
+    stones, x = scene(seed), GOAL.search_arc_length
+    if np.isinf(FootholdMilp(stones, PARAMETERS, x).cost(STANCE, Side.LEFT, MOST_STEPS)):
+        return "its sole stands over an edge by less than a cell of the raster"
+    for lattice in (0.01, 0.005):
+        if np.isfinite(searched(stones, lattice, 0.005)):
+            return f"its feet lie between nodes 2 cm apart; found {100 * lattice:g} cm apart"
+    return ""
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -76,7 +97,10 @@ def test_a_hundred_scenes_of_stones():
     assert np.all(full - 1e-6 <= found)
     assert np.all(np.isfinite(found) | np.isinf(tight))
     # Between the two programs lies what the lattice, or the raster at an edge, decides.
-    assert np.count_nonzero(np.isfinite(full) != np.isfinite(found)) <= 15
+    disagreements = np.flatnonzero(np.isfinite(full) != np.isfinite(found))
+    reasons = {int(seed): explanation(int(seed)) for seed in disagreements}
+    print(f"{100 - len(reasons)} of 100 agree;", reasons)
+    assert len(reasons) <= 15 and all(reasons.values())
     assert 20 < np.count_nonzero(np.isfinite(full)) < 95
     both = np.isfinite(full) & np.isfinite(found)
     assert np.median(found[both] / full[both]) < 1.05
