@@ -1,9 +1,14 @@
-"""Parameters that a person changes while the robot walks, by saving a file; applied between two ticks and recorded.
+"""What a person says to a walking robot by saving a file: parameters, and events of the operator.
 
 ```yaml
+carrot: [1.5, 0.2, 0.0]
+approve: 12
 footsteps.reach: 0.4
-/look_and_step/walk/sequence/walk_to/follow_path/selector/take_a_step/sequence/wait_for_swing.fraction: 0.4
+/look_and_step/walk/sequence/walk_to/follow_path/selector/go_on/take_a_step/wait_for_swing.fraction: 0.4
 ```
+
+A key without a dot is an event, sent whenever its value changes; three numbers are a place, x, y and yaw. All takes
+effect between two ticks and is part of the trace.
 """
 
 from __future__ import annotations
@@ -11,14 +16,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from behaviors import SettingError, Tree
+from behaviors import OperatorEvent, SettingError, Tree
+from skills.body_path import Goal
 from skills.parameters import ParameterError
 from strict_yaml import Kind, Node, Problem, YamlError, load_document
 
 # Parameters that are taken when a run begins: of the simulated world, and of maps that are under way.
 FIXED = (
-    *("robot", "camera", "noise", "lidar", "lidar_noise", "world", "drift", "falls", "judge", "walking"),
-    *("height_map",),
+    *("robot", "camera", "noise", "lidar", "lidar_noise", "world", "physics", "kinematic", "drift", "falls", "judge"),
+    *("walking", "swing", "whole_body", "height_map"),
 )
 
 
@@ -62,6 +68,10 @@ class LiveParameters:
             value = _value(entry.node)
             if self._applied.get(entry.key) == value:
                 continue
+            if "." not in entry.key:
+                self._applied[entry.key] = value
+                self._tree.send(OperatorEvent(entry.key, _place(value)))
+                continue
             target, _, key = entry.key.rpartition(".")
             if target in FIXED:
                 message = f"{target} is taken when a run begins; it cannot change while the robot walks"
@@ -77,6 +87,12 @@ class LiveParameters:
 
     def _say(self, problem: Problem) -> None:
         self._tree.context.log(str(problem), level="warning")
+
+
+def _place(value: Any) -> Any:
+    """Three numbers as a goal."""
+    is_place = isinstance(value, tuple) and len(value) == 3 and all(isinstance(part, int | float) for part in value)
+    return Goal(*map(float, value)) if is_place else value
 
 
 def _value(node: Node) -> Any:

@@ -24,7 +24,7 @@ FORMAT = 1
 RUN_FILE = "run.json"
 TRACE_FILE = "trace.jsonl"
 
-_PATHS = ("record", "plans", "out", "faults", "live")
+_PATHS = tuple(field.name for field in dataclasses.fields(RunOptions) if "Path" in str(field.type))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -85,6 +85,8 @@ def _bare_node(node: WrittenNode, indent: str) -> Iterator[str]:
     cls = DECORATORS.get(node.kind)
     if node.kind == "check" and not node.name:
         yield f"{indent}check: {_text(str(node.settings[0][1]))}"
+    elif _is_short(node, cls):
+        yield f"{indent}{node.kind}: {node.children[0].kind}"
     elif not node.children:
         yield f"{indent}{node.kind}: {{{', '.join(_body(node))}}}"
     elif cls is None and not node.name and not node.settings:
@@ -112,6 +114,14 @@ def _below(node: WrittenNode, cls: type[Decorator] | None, inside: str) -> Itera
         else:
             # A child that is no bare leaf stands beside the parameters, under its kind.
             yield from _node(child, inside)
+
+
+def _is_short(node: WrittenNode, cls: type[Decorator] | None) -> bool:
+    """Whether it is a decorator that says nothing but its child, and that is a bare leaf: `inverter: RobotFallen`."""
+    if cls is None or len(cls.slots) > 1 or node.name or node.settings:
+        return False
+    (child,) = node.children
+    return _is_bare(child) and not (child.comments.above or child.comments.behind)
 
 
 def _is_bare(node: WrittenNode) -> bool:

@@ -1,25 +1,30 @@
 """The leaves of look-and-step: thin, each calls one skill or one command of the robot."""
 
 from behaviors.leaves.follow_path import FindSubGoal, GoalReached, PlanBodyPath, WaitForGoal
+from behaviors.leaves.goals import GiveGoal, WatchCarrot
 from behaviors.leaves.guards import GroundFresh, RobotFallen
 from behaviors.leaves.height_map import UpdateHeightMap
 from behaviors.leaves.look import ExtractRegions, RememberGround
 from behaviors.leaves.plan_steps import PlanFootsteps
+from behaviors.leaves.review import ReviewPlan
 from behaviors.leaves.walk import PauseWalking, SendFootsteps, WaitForSwing, WaitUntilStanding
 
 __all__ = [
     "ExtractRegions",
     "FindSubGoal",
+    "GiveGoal",
     "GoalReached",
     "GroundFresh",
     "PauseWalking",
     "PlanBodyPath",
     "PlanFootsteps",
     "RememberGround",
+    "ReviewPlan",
     "RobotFallen",
     "SendFootsteps",
     "UpdateHeightMap",
     "WaitForGoal",
     "WaitForSwing",
     "WaitUntilStanding",
+    "WatchCarrot",
 ]

@@ -291,8 +291,8 @@ t.yaml:3:101: got 3, needs text""",
     ),
     "an included tree that is not shipped": (
         "{tree: t, include: [look_and_stp], root: Scripted}",
-        't.yaml:1:21: unknown tree "look_and_stp"; did you mean "look_and_step"? (shipped: look_and_step; '
-        "or a .yaml file)",
+        't.yaml:1:21: unknown tree "look_and_stp"; did you mean "look_and_step"? (shipped: follow_carrot, '
+        "inspect_and_return, look_and_step, patrol; or a .yaml file)",
     ),
 }
 

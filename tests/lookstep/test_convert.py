@@ -25,7 +25,7 @@ def test_the_shipped_tree_goes_to_xml_and_back(tmp_path: Path, capsys: pytest.Ca
 
 def test_a_run_becomes_a_log(tmp_path: Path):
     run, log = tmp_path / "run", tmp_path / "run.db3"
-    lookstep.run(course="flat", time_limit=0.5, assignments=("camera.resolution=0.3125",), out=run)
+    lookstep.run(course="flat", world="kinematic", time_limit=0.5, assignments=("camera.resolution=0.3125",), out=run)
     assert main(["convert", str(run), str(log)]) == 0
     with sqlite3.connect(log) as database:
         (count,) = database.execute("SELECT COUNT(*) FROM Transitions WHERE state = 1").fetchone()

@@ -17,14 +17,20 @@ from lookstep.summary import Outcome, Summary
 from strict_yaml import YamlError, parse_document
 
 SMALL_CAMERA = ("camera.resolution=0.3125",)
-PLAN = "/look_and_step/walk/sequence/walk_to/follow_path/selector/take_a_step/sequence/plan/sequence/plan_footsteps"
+PLAN = "/look_and_step/walk/sequence/walk_to/follow_path/selector/go_on/take_a_step/plan_steps/sequence/plan_footsteps"
 
 
 def walk(text: str, folder: Path, seconds: float, course: str = "flat", **options) -> Summary:
     file = folder / "faults.yaml"
     file.write_text(text)
     return lookstep.run(
-        course=course, time_limit=seconds, assignments=SMALL_CAMERA, faults=file, out=folder / "out", **options
+        course=course,
+        world="kinematic",
+        time_limit=seconds,
+        assignments=SMALL_CAMERA,
+        faults=file,
+        out=folder / "out",
+        **options,
     )
 
 
@@ -39,7 +45,7 @@ def reasons(folder: Path) -> dict[str, list[tuple[float, str]]]:
 
 
 def test_a_robot_that_sees_nothing_halts_with_the_reason_and_goes_on_when_it_sees_again(tmp_path: Path):
-    summary = walk("faults: [{at: sensor:depth, mode: off, start: 0.5, duration: 5.0}]", tmp_path, 7.0)
+    summary = walk("faults: [{at: sensor:depth, mode: off, start: 0.5, duration: 5.0}]", tmp_path, 6.6)
     said = reasons(tmp_path)["ground_fresh"]
     assert next(reason for _, reason in said if "limit 1.5 s" in reason).startswith("regions are ")
     assert summary.pauses.count == 1 and summary.steps.total >= 4
@@ -47,10 +53,10 @@ def test_a_robot_that_sees_nothing_halts_with_the_reason_and_goes_on_when_it_see
 
 
 def test_a_planner_that_finds_nothing_and_one_that_raises(tmp_path: Path):
-    summary = walk(f"faults: [{{at: {PLAN}, mode: off, duration: 1.0}}]", tmp_path, 3.0)
+    summary = walk(f"faults: [{{at: {PLAN}, mode: off, duration: 1.0}}]", tmp_path, 2.4)
     assert [why for _, why in reasons(tmp_path)["plan_footsteps"]].count("injected fault") == 2
     assert summary.first_step_after_s is not None and 1.8 < summary.first_step_after_s < 2.6
-    summary = walk(f"faults: [{{at: {PLAN}, mode: exception, start: 1.5}}]", tmp_path, 4.0)
+    summary = walk(f"faults: [{{at: {PLAN}, mode: exception, start: 0.2}}]", tmp_path, 1.0)
     assert summary.outcome is Outcome.ERROR
     assert summary.reason == f"{PLAN}: InjectedFaultError in tick: injected fault"
 
@@ -64,7 +70,7 @@ def test_a_block_that_is_gone_is_a_pit_that_the_robot_does_not_step_into(tmp_pat
     )
     course.write_text(f"start: {{x: 0, y: 0}}\ngoal: {{x: 3, y: 0}}\nobjects:\n{objects}")
     text = "faults: [{at: world:pad_1, mode: off, start: 0.1}]"
-    summary = walk(text, tmp_path, 6.0, str(course))
+    summary = walk(text, tmp_path, 4.0, str(course))
     assert summary.outcome is Outcome.TIMEOUT and summary.distance_m < 0.8
     assert replay(tmp_path / "out", ReplayOptions(outputs=True)).diff.identical
 

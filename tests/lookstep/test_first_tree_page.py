@@ -30,9 +30,9 @@ def test_the_pages_commands_do_what_it_says(folder: Path, capsys: pytest.Capture
     assert main(own["check"]) == 0
     assert capsys.readouterr().out == "stroll.yaml: sound (tree)\n"
     assert main(own["tree"]) == 0
-    # The recording is left out and the camera made small to save the suite's time; the walk is the page's.
+    # The recording and physics are left out and the camera made small to save the suite's time; the walk is the page's.
     words = own["run"][: own["run"].index("--record")]
-    walk = [*words, "--out", "runs/stroll", "--set", "camera.resolution=0.3125"]
+    walk = [*words, "--world", "kinematic", "--out", "runs/stroll", "--set", "camera.resolution=0.3125"]
     assert main(walk) == 1
     assert "stopped: the tree has succeeded" in capsys.readouterr().out
     assert main(next(command for command in COMMANDS if command[0] == "why")) == 0

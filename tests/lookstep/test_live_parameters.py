@@ -9,7 +9,7 @@ from lookstep.options import RunOptions
 from lookstep.replay import ReplayOptions, replay
 from lookstep.walk import walk
 
-WAIT = "/look_and_step/walk/sequence/walk_to/follow_path/selector/take_a_step/sequence/wait_for_swing"
+WAIT = "/look_and_step/walk/sequence/walk_to/follow_path/selector/go_on/take_a_step/wait_for_swing"
 
 
 class Person:
@@ -37,7 +37,12 @@ def test_saved_parameters_are_applied_between_ticks_recorded_and_replayed(tmp_pa
         },
     )
     options = RunOptions(
-        course="flat", time_limit=2.0, assignments=("camera.resolution=0.3125",), live=file, out=tmp_path / "out"
+        course="flat",
+        world="kinematic",
+        time_limit=1.0,
+        assignments=("camera.resolution=0.3125",),
+        live=file,
+        out=tmp_path / "out",
     )
     summary = walk(options, person)
     lines = [json.loads(line) for line in (tmp_path / "out" / "trace.jsonl").read_text().splitlines()[1:]]

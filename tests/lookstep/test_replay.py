@@ -22,7 +22,7 @@ def walked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A walk over blocks, long enough for two plans."""
     folder = tmp_path_factory.mktemp("walked")
     assignments = ("camera.resolution=0.3125", "drift.velocity=[0,0.01,0]", f"{WALK}/follow_path.attempts=50")
-    lookstep.run(course="rough", seed=3, time_limit=2.4, assignments=assignments, out=folder)
+    lookstep.run(course="rough", world="kinematic", seed=3, time_limit=2.4, assignments=assignments, out=folder)
     return folder
 
 
@@ -37,7 +37,7 @@ def test_played_back_outputs_decide_the_same(walked: Path):
 
 
 def test_an_edited_parameter_is_named_where_it_decides_otherwise(walked: Path):
-    fraction = f"{WALK}/follow_path/selector/take_a_step/sequence/wait_for_swing.fraction"
+    fraction = f"{WALK}/follow_path/selector/go_on/take_a_step/wait_for_swing.fraction"
     diff = replay(walked, ReplayOptions(assignments=(f"{fraction}=0.2",))).diff
     assert [difference.subject for difference in diff.tree] == [fraction]
     assert diff.first is not None and diff.first_command is not None
@@ -62,14 +62,20 @@ def test_an_edited_tree_with_played_back_outputs_says_where_the_recording_is_sil
     edited = tmp_path / "edited.yaml"
     send = "- SendFootsteps: {in: [plan]}\n"
     assert send in text
-    edited.write_text(text.replace(send, f"- Wait: {{duration: 0.1}}\n{16 * ' '}{send}"))
+    edited.write_text(text.replace(send, f"- Wait: {{duration: 0.1}}\n{8 * ' '}{send}"))
     replayed = replay(walked, ReplayOptions(tree=str(edited), outputs=True))
     assert any(path.endswith("send_footsteps") for path in replayed.strayed)
 
 
-def test_a_recording_in_real_time_replays_as_well(tmp_path: Path):
-    options = {"course": "flat", "assignments": ("camera.resolution=0.3125",), "time_limit": 1.2}
-    lookstep.run(**options, executor="realtime", speed=4.0, out=tmp_path)
+def test_a_recording_of_physics_in_real_time_replays_as_well(tmp_path: Path):
+    lookstep.run(
+        course="flat",
+        time_limit=0.6,
+        assignments=("camera.resolution=0.3125",),
+        out=tmp_path,
+        executor="realtime",
+        speed=4.0,
+    )
     assert replay(tmp_path, ReplayOptions()).diff.identical
 
 
