@@ -29,10 +29,17 @@ _GRAVITY = 9.81
 
 @parameters
 class KinematicParameters:
-    """Rates of a body without dynamics."""
+    """Rate and contact of a body without dynamics."""
 
     control_rate: float = parameter(
         100.0, unit="Hz", minimum=10.0, maximum=1000.0, meaning="control steps a second of robot time"
+    )
+    stance_stiffness: float = parameter(
+        100.0,
+        unit="1/s^2",
+        minimum=0.0,
+        maximum=1000.0,
+        meaning="pull back to where a foot landed, which long steps in time would let slip",
     )
 
 

@@ -9,6 +9,7 @@ world the accelerations that the controller commands come true. Falls are called
 
 from __future__ import annotations
 
+from dataclasses import replace
 from enum import Enum
 from typing import Any
 
@@ -115,8 +116,13 @@ class SimulatedWorld:
         model = self._model = RobotModel(
             self.robot.mjcf_path, self.robot.sole_length, self.robot.sole_width, self.robot.torso_body
         )
-        self._walker = Walker(model, self._start_stance(), walker or WalkerParameters())
-        self._body = self._make_body(model, physics or PhysicsParameters(), kinematic or KinematicParameters(), seed)
+        physics, kinematic = physics or PhysicsParameters(), kinematic or KinematicParameters()
+        walker = walker or WalkerParameters()
+        if kind is WorldKind.KINEMATIC:
+            whole_body = replace(walker.whole_body, stance_stiffness=kinematic.stance_stiffness)
+            walker = replace(walker, whole_body=whole_body)
+        self._walker = Walker(model, self._start_stance(), walker)
+        self._body = self._make_body(model, physics, kinematic, seed)
         self._falls = FallDetector(falls or FallParameters(), self.robot)
         self._drift = StateDrift(drift or StateDriftParameters())
         self._asked_time = 0.0
