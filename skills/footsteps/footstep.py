@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from enum import Enum
 
 import numpy as np
@@ -76,6 +76,8 @@ class Footstep:
         swing_duration, transfer_duration: time in the air, and in double support before it [s].
         swing_height: how far the sole rises above the higher end of its way [m].
         swing_waypoints_world: sole positions to pass on the way, (K, 3), may be empty [m].
+        landing_region_sole: where the sole's centre may land instead on ground as good, (N, 2) convex polygon in the
+            sole's plane, counter-clockwise, at most 8 corners; empty where it must land as planned [m].
         margin: distance of the whole sole from the edges of its region, no more than was wanted; negative over one [m].
     """
 
@@ -87,10 +89,12 @@ class Footstep:
     transfer_duration: float
     swing_height: float
     swing_waypoints_world: Array
+    landing_region_sole: Array = field(default_factory=lambda: np.zeros((0, 2)))
     margin: float = 0.0
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "foothold_sole", readonly(self.foothold_sole, (None, 2)))
+        object.__setattr__(self, "landing_region_sole", readonly(self.landing_region_sole, (None, 2)))
         waypoints = np.asarray(self.swing_waypoints_world, dtype=np.float64).reshape(-1, 3)
         object.__setattr__(self, "swing_waypoints_world", readonly(waypoints))
 

@@ -150,6 +150,11 @@ def rotation_z(angle: float) -> Array:
     return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
+def cross(a: Array, b: Array) -> Array:
+    """Cross product of two vectors (3,), or of the columns of (3, N) with one; much faster than numpy's for one."""
+    return np.array((a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
+
+
 def wrap_angle(angle: float) -> float:
     """The same angle within [-pi, pi)."""
     return float((angle + np.pi) % (2 * np.pi) - np.pi)

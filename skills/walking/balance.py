@@ -64,7 +64,7 @@ class Balance:
         self.omega = float(np.sqrt(parameters.gravity / parameters.com_height))
         self.dcm = self.dcm_reference = self.cop = gait.stance.mid_feet[:2]
         self._height: tuple[float, float, float] | None = None
-        self._since_plan = 0.0
+        self._since_plan = self._height_clock = 0.0
 
     @property
     def dcm_error(self) -> float:
@@ -84,7 +84,14 @@ class Balance:
         if self._height is None:
             self._height = (float(body.com[2]), float(body.com_velocity[2]), 0.0)
         state = self._com_state(body, yaw)
+        self._height_clock = 0.0
         self._height_plan = plan_height(phases, self._plan, state, self._model, self._parameters)
+
+    def replan_dcm(self) -> None:
+        """Plan the DCM anew, for another landing of the foot in the air; the CoM height stays as planned."""
+        elapsed = self._since_plan
+        self._plan_dcm(self._gait.preview(0.0))
+        self._height_clock += elapsed
 
     def control(self, body: BodyDynamics, dt: float) -> BalanceCommand:
         """The CoM acceleration of this tick; the last one was dt ago [s]."""
@@ -155,7 +162,7 @@ class Balance:
         return float(min(max(wanted, -p.lowest_descent * gravity), p.highest_ascent * gravity))
 
     def _planned_height(self) -> tuple[float, float, float]:
-        value, velocity, acceleration = self._height_plan.motion(self._since_plan)
+        value, velocity, acceleration = self._height_plan.motion(self._height_clock + self._since_plan)
         return float(value[0]), float(velocity[0]), float(acceleration[0])
 
     def _ground_at(self, cop: Array) -> float:

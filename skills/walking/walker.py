@@ -14,7 +14,7 @@ import numpy as np
 import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from skills.footsteps.footstep import Footstep, Side, Stance
-from skills.geometry.pose import Array, rotation_y, rotation_z, wrap_angle
+from skills.geometry.pose import Array, cross, rotation_y, rotation_z, wrap_angle
 from skills.walking.balance import Balance, BalanceCommand
 from skills.walking.body_dynamics import BodyDynamics
 from skills.walking.contact import Contact
@@ -22,6 +22,7 @@ from skills.walking.gait import Gait, toe_points
 from skills.walking.posture import nominal_posture, standing_configuration
 from skills.walking.quadratic_program import MakeSolver, QpStatus
 from skills.walking.robot_model import RobotModel
+from skills.walking.step_adjustment import StepAdjustment, StepAdjustmentParameters, SwingState
 from skills.walking.swing_parameters import SwingParameters
 from skills.walking.uniform_spline import minimum_jerk_at
 from skills.walking.walking_parameters import WalkingParameters
@@ -63,11 +64,13 @@ class WalkerParameters:
         walking: phases, balance and posture.
         swing: the way of a foot through the air.
         whole_body: weights, gains and limits of the whole body.
+        step_adjustment: how far steps may be changed to save the balance.
     """
 
     walking: WalkingParameters = field(default_factory=WalkingParameters)
     swing: SwingParameters = field(default_factory=SwingParameters)
     whole_body: WholeBodyParameters = field(default_factory=WholeBodyParameters)
+    step_adjustment: StepAdjustmentParameters = field(default_factory=StepAdjustmentParameters)
 
 
 class Walker:
@@ -95,6 +98,8 @@ class Walker:
         self._whole_body = WholeBodyController(model, whole_body, make_solver)
         self._gait = Gait(stance, model.foothold_sole, walking, parameters.swing)
         self._balance = Balance(self._gait, model, walking, whole_body)
+        self._adjustment = StepAdjustment(self._balance.omega, parameters.step_adjustment)
+        self._adjustment_parameters = parameters.step_adjustment
         self._contacts: dict[Side, Contact] = {}
         self._yaw = self._yaw_from = stance.yaw
         self._paused, self._failure = False, ""
@@ -208,10 +213,11 @@ class Walker:
     def _change_phase(self, dt: float) -> None:
         gait = self._gait
         if gait.phase is WalkingPhase.SWING:
+            self._adjust_landing(dt)
             if self._has_landed():
                 self._land()
         elif gait.phase is WalkingPhase.TRANSFER:
-            if gait.elapsed >= gait.duration:
+            if gait.elapsed >= gait.duration or self._must_step_now():
                 self._end_transfer(dt)
             elif self._must_toe_off():
                 gait.lift_heel()
@@ -230,6 +236,36 @@ class Walker:
             step = gait.lift_off(T_world_sole)
             self._events.append(StepEvent(StepEventKind.STARTED, self._time, step, T_world_sole))
         self._replan()
+
+    def _must_step_now(self) -> bool:
+        """Whether the DCM has left both feet, so that only a step can save the balance."""
+        gait = self._gait
+        if gait.step is None or gait.elapsed < self._adjustment_parameters.shortest_transfer:
+            return False
+        return gait.support().distance(self._balance.dcm) > 0.0
+
+    def _adjust_landing(self, dt: float) -> None:
+        """Let the foot in the air land where and when it saves the balance."""
+        p, swing, gait = self._adjustment_parameters, self._gait.swing, self._gait
+        if swing is None or swing.share > p.last_share:
+            return
+        landing = self._adjustment.landing(
+            SwingState(
+                step=swing.step,
+                T_world_stance=gait.stance.sole(swing.step.side.opposite),
+                support=gait.support(),
+                dcm=self._balance.dcm,
+                dcm_at_landing=self._dcm_at_landing,
+                remaining=max(0.0, 1.0 - swing.share) * swing.step.swing_duration,
+            )
+        )
+        wanted = landing.shift - swing.shift[:2]
+        distance = float(np.hypot(wanted[0], wanted[1]))
+        if distance == 0.0 and landing.pace == swing.pace:
+            return
+        share = min(1.0, p.shift_speed * dt / max(distance, _ROUNDING))
+        swing.retarget(swing.shift[:2] + share * wanted, landing.pace, dt)
+        self._balance.replan_dcm()
 
     def _has_landed(self) -> bool:
         p, swing = self._parameters, self._gait.swing
@@ -272,6 +308,12 @@ class Walker:
         gait.rest_on(Stance(soles[Side.LEFT], soles[Side.RIGHT]))
         self._contacts.clear()
         self._balance.replan(self._body, self._yaw)
+        self._dcm_at_landing = self._balance.dcm_at_landing - self._shift()
+
+    def _shift(self) -> Array:
+        """How far the foot in the air lands from its commanded foothold, (2,) in the world [m]."""
+        swing = self._gait.swing
+        return np.zeros(2) if swing is None else swing.shift[:2]
 
     def _turn(self, dt: float) -> None:
         """Turn the heading of the pelvis in the swing to the mean of the feet."""
@@ -324,7 +366,7 @@ class Walker:
         if gait.on_toe and gait.step is not None and gait.step.side is side:
             points = gait.points(side)
             toe = np.append(points[toe_points(points)].mean(axis=0), 0.0)
-            acceleration[:3] -= p.stance_damping * np.cross(velocity[3:], toe)
+            acceleration[:3] -= p.stance_damping * cross(velocity[3:], toe)
             weights[4] = 0.0
             return SoleTask(acceleration, weights, toe, self._contact(side))
         if p.stance_stiffness > 0.0:
@@ -343,7 +385,7 @@ class Walker:
         linear = to_sole @ (motion.acceleration[:3] + p.swing_stiffness * (motion.pose.p - sole.p))
         linear += p.swing_damping * (to_sole @ motion.velocity[:3] - velocity[:3])
         # The task is a spatial acceleration: the classical one without the part that turning makes.
-        linear -= np.cross(velocity[3:], velocity[:3])
+        linear -= cross(velocity[3:], velocity[:3])
         angular = to_sole @ motion.acceleration[3:] + p.swing_stiffness * pin.log3(to_sole @ motion.pose.R)
         angular += p.swing_damping * (to_sole @ motion.velocity[3:] - velocity[3:])
         weights = np.array([p.swing_weight] * 3 + [p.swing_turn_weight] * 3)

@@ -22,7 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from skills.footsteps.footstep import Side
-from skills.geometry.pose import Array, Mask
+from skills.geometry.pose import Array, Mask, cross
 from skills.walking.body_dynamics import BodyDynamics
 from skills.walking.contact import CONTACT_POINTS, RAYS, Contact
 from skills.walking.quadratic_program import MakeSolver, OsqpSolver, QpSolver, QpStatus
@@ -229,12 +229,5 @@ def _in_order(tasks: BodyTasks) -> tuple[tuple[Side, SoleTask], ...]:
 
 def _move_reference(J: Array, target: Array, r: Array) -> None:
     """Let a spatial task (6 rows) mean the linear acceleration at a point r of the same body."""
-    for moved in (J, target):
-        linear, angular = moved[:3], moved[3:]
-        linear += np.stack(
-            (
-                angular[1] * r[2] - angular[2] * r[1],
-                angular[2] * r[0] - angular[0] * r[2],
-                angular[0] * r[1] - angular[1] * r[0],
-            )
-        )
+    J[:3] += cross(J[3:], r)
+    target[:3] += cross(target[3:], r)
