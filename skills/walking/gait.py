@@ -60,6 +60,7 @@ class Gait:
         self.last_side: Side | None = None
         self.on_toe = False
         self._newest_id: int | None = None
+        self._landed: Swing | None = None
         self._update_support()
 
     @property
@@ -68,6 +69,16 @@ class Gait:
         if self.step is not None:
             return self.step.sequence_id
         return -1 if self._newest_id is None else self._newest_id
+
+    @property
+    def may_take_back(self) -> bool:
+        """Whether the last landing could still turn out to have been none."""
+        return self._landed is not None
+
+    @property
+    def landed_before(self) -> bool:
+        """Whether the foot in the air has landed already, on nothing."""
+        return self.swing is not None and self.swing.taken_back
 
     @property
     def remaining(self) -> float:
@@ -118,7 +129,7 @@ class Gait:
         assert step is not None, "only a step lifts a foot"
         self._newest_id = step.sequence_id
         self.stance = self.stance.with_sole(step.side, T_world_sole)
-        self.swing = Swing(T_world_sole, step, self._swing_parameters)
+        self.swing, self._landed = Swing(T_world_sole, step, self._swing_parameters), None
         self._enter(WalkingPhase.SWING, step.swing_duration)
         return step
 
@@ -129,12 +140,24 @@ class Gait:
         self.stance = self.stance.with_sole(step.side, T_world_sole)
         foothold = step.foothold_sole if len(step.foothold_sole) >= 3 else self._sole
         self._points[step.side] = contact_points(foothold)
+        self._landed = self.swing
         self.last_side, self.step, self.swing = step.side, None, None
         if self.queue:
             self._start_transfer()
         else:
             self._enter(WalkingPhase.TRANSFER, self._parameters.final_transfer)
         return step
+
+    def take_back_landing(self) -> None:
+        """Go on with the swing that ended last: its foot sinks until the ground comes."""
+        swing = self._landed
+        assert swing is not None, "no foot has landed"
+        if self.step is not None:
+            self.queue = (self.step, *self.queue)
+        self.step, self.swing, self._landed = swing.step, swing, None
+        swing.share, swing.taken_back = max(swing.share, 1.0), True
+        self._enter(WalkingPhase.SWING, swing.step.swing_duration)
+        self.elapsed = self.duration
 
     def stand(self) -> None:
         """End the last transfer."""

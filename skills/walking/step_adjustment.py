@@ -169,4 +169,3 @@ def _landing_region(step: Footstep) -> Array:
     """Places of the sole's centre on good ground from above, (N, 2) in the world [m]."""
     region = np.column_stack((step.landing_region_sole, np.zeros(len(step.landing_region_sole))))
     return (step.T_world_sole @ region)[:, :2]
-

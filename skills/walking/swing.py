@@ -23,6 +23,7 @@ class Swing:
         trajectory: the way to its foothold.
         share: of the trajectory that has passed; more than 1 where the ground did not come.
         pace: how fast the trajectory passes, 1 as commanded.
+        taken_back: whether it ended on nothing and goes on.
         shift: of the target from the commanded foothold, in its plane, (3,) in the world [m].
     """
 
@@ -31,6 +32,7 @@ class Swing:
         self.trajectory = SwingTrajectory(T_world_start, step, parameters)
         self.share = 0.0
         self.pace = 1.0
+        self.taken_back = False
         self.shift = np.zeros(3)
         self._shift_rate = np.zeros(3)
 

@@ -103,7 +103,7 @@ class Walker:
         self._contacts: dict[Side, Contact] = {}
         self._yaw = self._yaw_from = stance.yaw
         self._paused, self._failure = False, ""
-        self._touching = dict.fromkeys(Side, 0.0)
+        self._touching, self._unloaded = dict.fromkeys(Side, 0.0), dict.fromkeys(Side, 0.0)
         self._events: list[StepEvent] = []
         self._log: list[ControlSample] = []
         self.qp_failures = 0
@@ -205,10 +205,11 @@ class Walker:
         return WalkingPhase.FALLEN if self._failure else self._gait.phase
 
     def _time_contacts(self, measured: BodyMeasurement, dt: float) -> None:
-        """How long each sole has been pressed by the ground."""
+        """How long each sole has been pressed by the ground, or has not been."""
         for side in Side:
             touches = measured.loads[side] > self._parameters.touchdown_force
             self._touching[side] = self._touching[side] + dt if touches else 0.0
+            self._unloaded[side] = 0.0 if touches else self._unloaded[side] + dt
 
     def _change_phase(self, dt: float) -> None:
         gait = self._gait
@@ -217,7 +218,10 @@ class Walker:
             if self._has_landed():
                 self._land()
         elif gait.phase is WalkingPhase.TRANSFER:
-            if gait.elapsed >= gait.duration or self._must_step_now():
+            if self._landed_on_nothing():
+                gait.take_back_landing()
+                self._replan()
+            elif gait.elapsed >= gait.duration or self._must_step_now():
                 self._end_transfer(dt)
             elif self._must_toe_off():
                 gait.lift_heel()
@@ -236,6 +240,13 @@ class Walker:
             step = gait.lift_off(T_world_sole)
             self._events.append(StepEvent(StepEventKind.STARTED, self._time, step, T_world_sole))
         self._replan()
+
+    def _landed_on_nothing(self) -> bool:
+        """Whether the foot that landed last has not been pressed since: what it felt was no ground."""
+        p, gait, side = self._parameters, self._gait, self._gait.last_side
+        if side is None or not p.phantom_time <= gait.elapsed < 2.0 * p.phantom_time or not gait.may_take_back:
+            return False
+        return self._unloaded[side] >= p.phantom_time - _ROUNDING
 
     def _must_step_now(self) -> bool:
         """Whether the DCM has left both feet, so that only a step can save the balance."""
@@ -287,8 +298,10 @@ class Walker:
         side = self._gait.swing.step.side if self._gait.swing is not None else Side.LEFT
         T_world_sole = self._body.sole(side)
         self._yaw_from = self._yaw
+        again = self._gait.landed_before
         step = self._gait.land(T_world_sole)
-        self._events.append(StepEvent(StepEventKind.COMPLETED, self._time, step, T_world_sole))
+        if not again:
+            self._events.append(StepEvent(StepEventKind.COMPLETED, self._time, step, T_world_sole))
         self._replan()
 
     def _must_toe_off(self) -> bool:
