@@ -26,7 +26,13 @@ from skills.body_path import SubGoalParameters
 from skills.footsteps import FootstepParameters, TerrainParameters
 from skills.height_map import HeightMapParameters
 from skills.regions import MemoryParameters, RegionParameters, RegistrationParameters
-from skills.walking import SwingParameters, WalkerParameters, WalkingParameters, WholeBodyParameters
+from skills.walking import (
+    StepAdjustmentParameters,
+    SwingParameters,
+    WalkerParameters,
+    WalkingParameters,
+    WholeBodyParameters,
+)
 from strict_yaml import (
     Entry,
     Kind,
@@ -66,6 +72,7 @@ class Configuration:
     walking: WalkingParameters
     swing: SwingParameters
     whole_body: WholeBodyParameters
+    step_adjustment: StepAdjustmentParameters
     regions: RegionParameters
     region_memory: MemoryParameters
     height_map: HeightMapParameters
@@ -77,7 +84,12 @@ class Configuration:
     @property
     def walker(self) -> WalkerParameters:
         """All settings of the walking controller."""
-        return WalkerParameters(walking=self.walking, swing=self.swing, whole_body=self.whole_body)
+        return WalkerParameters(
+            walking=self.walking,
+            swing=self.swing,
+            whole_body=self.whole_body,
+            step_adjustment=self.step_adjustment,
+        )
 
     def by_subject(self) -> dict[str, Any]:
         """The typed parameters by the name of their subject."""

@@ -69,6 +69,7 @@ def pack_plan(plan: FootstepPlan, name: str, arrays: Arrays) -> dict[str, Any]:
     for kind, polygons, columns in (
         ("footholds", [step.foothold_sole for step in plan.steps], 2),
         ("waypoints", [step.swing_waypoints_world for step in plan.steps], 3),
+        ("landing_regions", [step.landing_region_sole for step in plan.steps], 2),
     ):
         arrays[f"{name}_{kind}"] = np.concatenate([np.zeros((0, columns)), *polygons])
         arrays[f"{name}_{kind}_sizes"] = np.array([len(polygon) for polygon in polygons], dtype=np.int32)
@@ -88,8 +89,9 @@ def pack_plan(plan: FootstepPlan, name: str, arrays: Arrays) -> dict[str, Any]:
 
 def unpack_plan(header: Mapping[str, Any], name: str, arrays: Arrays) -> FootstepPlan:
     """The plan that `pack_plan` has put away."""
-    footholds, waypoints = (
-        _split(arrays[f"{name}_{kind}"], arrays[f"{name}_{kind}_sizes"]) for kind in ("footholds", "waypoints")
+    footholds, waypoints, landing_regions = (
+        _split(arrays[f"{name}_{kind}"], arrays[f"{name}_{kind}_sizes"])
+        for kind in ("footholds", "waypoints", "landing_regions")
     )
     figures = arrays[f"{name}_figures"]
     steps = []
@@ -105,6 +107,7 @@ def unpack_plan(header: Mapping[str, Any], name: str, arrays: Arrays) -> Footste
                 transfer_duration=transfer_duration,
                 swing_height=swing_height,
                 swing_waypoints_world=waypoints[i],
+                landing_region_sole=landing_regions[i],
                 margin=margin,
             )
         )

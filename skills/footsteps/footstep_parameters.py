@@ -101,6 +101,13 @@ class FootstepParameters:
         0.03, unit="m", meaning="ground there so high: forward before down", minimum=0.0
     )
 
+    landing_move: float = parameter(
+        0.15, unit="m", meaning="farthest a step may land from its foothold to save balance", minimum=0.0, maximum=0.5
+    )
+    landing_margin: float = parameter(
+        0.02, unit="m", meaning="distance of such a landing from the region's edges", minimum=0.0, maximum=0.2
+    )
+
     lattice: float = parameter(0.04, unit="m", meaning="spacing of the search lattice", minimum=0.01, maximum=0.2)
     headings: int = parameter(36, unit="1", meaning="headings of the lattice in a full turn", minimum=8, maximum=360)
     heuristic_weight: float = parameter(

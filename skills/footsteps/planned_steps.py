@@ -6,6 +6,7 @@ import numpy as np
 
 from skills.footsteps.footstep import Footstep, Side, Stance
 from skills.footsteps.footstep_parameters import FootstepParameters
+from skills.footsteps.landing_region import landing_region
 from skills.footsteps.swing_clearance import SwingClearance, swing_clearance
 from skills.footsteps.terrain import Foothold, Terrain
 from skills.footsteps.way import sole_of
@@ -37,6 +38,7 @@ def planned_steps(
                 transfer_duration=parameters.transfer_duration,
                 swing_height=swing.height,
                 swing_waypoints_world=swing.waypoints_world,
+                landing_region_sole=landing_region(terrain, landing, parameters),
                 margin=foothold.margin,
             )
         )

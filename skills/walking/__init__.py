@@ -1,6 +1,7 @@
 """Walking over footsteps: balance, swing and joint motion."""
 
 from skills.walking.robot_model import RobotModel
+from skills.walking.step_adjustment import StepAdjustmentParameters
 from skills.walking.swing_parameters import SwingParameters
 from skills.walking.walker import BodyMeasurement, Walker, WalkerParameters
 from skills.walking.walking_parameters import WalkingParameters
@@ -19,6 +20,7 @@ __all__ = [
     "ControlSample",
     "RobotModel",
     "RobotState",
+    "StepAdjustmentParameters",
     "StepEvent",
     "StepEventKind",
     "SwingParameters",
