@@ -41,6 +41,11 @@ class Leg:
     knee_offset: float
     mass_at_ankle: float
 
+    @property
+    def knee(self) -> int:
+        """The knee's place among the robot's joints."""
+        return self.joints[3]
+
     def length(self, knee: float) -> float:
         """Distance from hip to ankle at a knee angle [m]."""
         bend = np.cos(knee - self.knee_offset)

@@ -11,19 +11,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports]
 
 from skills.footsteps.footstep import Footstep, Side, Stance
-from skills.geometry.pose import Array, cross, rotation_y, rotation_z, wrap_angle
+from skills.geometry.pose import Array, wrap_angle
 from skills.walking.balance import Balance, BalanceCommand
 from skills.walking.body_dynamics import BodyDynamics
 from skills.walking.contact import Contact
+from skills.walking.contact_times import ContactTimes
 from skills.walking.gait import Gait, toe_points
-from skills.walking.posture import nominal_posture, standing_configuration
+from skills.walking.motion_objectives import MotionObjectives
+from skills.walking.posture import standing_configuration
 from skills.walking.quadratic_program import MakeSolver, QpStatus
 from skills.walking.robot_model import RobotModel
 from skills.walking.step_adjustment import StepAdjustment, StepAdjustmentParameters, SwingState
 from skills.walking.swing_parameters import SwingParameters
+from skills.walking.transitions import Transitions
 from skills.walking.uniform_spline import minimum_jerk_at
 from skills.walking.walking_parameters import WalkingParameters
 from skills.walking.walking_state import (
@@ -33,11 +35,10 @@ from skills.walking.walking_state import (
     WalkingPhase,
     WalkingStatus,
 )
-from skills.walking.whole_body_controller import BodyCommand, BodyTasks, SoleTask, WholeBodyController
+from skills.walking.whole_body_controller import BodyCommand, WholeBodyController
 from skills.walking.whole_body_parameters import WholeBodyParameters
 
 _ROUNDING = 1e-9
-_ZERO = np.zeros(3)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,18 +93,21 @@ class Walker:
         walking, whole_body = parameters.walking, parameters.whole_body
         self._model, self._parameters, self._body_parameters = model, walking, whole_body
         self.start_configuration = standing_configuration(model, stance, walking)
-        self._posture = nominal_posture(model, walking)[7:]
-        self._posture_weights = _posture_weights(model, whole_body)
         self._body = BodyDynamics(model)
+        self._contact_times = ContactTimes(walking.touchdown_force)
         self._whole_body = WholeBodyController(model, whole_body, make_solver)
         self._gait = Gait(stance, model.foothold_sole, walking, parameters.swing)
+        self._objectives = MotionObjectives(self._gait, model, walking, whole_body)
         self._balance = Balance(self._gait, model, walking, whole_body)
         self._adjustment = StepAdjustment(self._balance.omega, parameters.step_adjustment)
         self._adjustment_parameters = parameters.step_adjustment
+        self._transitions = Transitions(
+            self._gait, self._balance, self._body, self._contact_times, walking, parameters.step_adjustment
+        )
         self._contacts: dict[Side, Contact] = {}
         self._yaw = self._yaw_from = stance.yaw
+        self._yaw_rate = 0.0
         self._paused, self._failure = False, ""
-        self._touching, self._unloaded = dict.fromkeys(Side, 0.0), dict.fromkeys(Side, 0.0)
         self._events: list[StepEvent] = []
         self._log: list[ControlSample] = []
         self.qp_failures = 0
@@ -145,14 +149,16 @@ class Walker:
             return self._whole_body.brake(self._body)
         self._body.update(measured.q, measured.v)
         self._gait.advance(dt)
-        self._time_contacts(measured, dt)
+        self._contact_times.update(measured.loads, dt)
         self._change_phase(dt)
         self._turn(dt)
         balance = self._balance.control(self._body, dt)
         lost = self._balance.fall()
         if lost:
             self.fall(lost)
-        command = self._whole_body.solve(self._body, self._tasks(balance))
+        heading = (self._yaw, self._yaw_rate)
+        tasks = self._objectives.tasks(self._body, balance.com_acceleration, heading, self._contacts)
+        command = self._whole_body.solve(self._body, tasks)
         self.qp_failures += command.status is QpStatus.FAILED
         self._log.append(self._sample(balance, command))
         return command
@@ -204,28 +210,21 @@ class Walker:
     def _phase(self) -> WalkingPhase:
         return WalkingPhase.FALLEN if self._failure else self._gait.phase
 
-    def _time_contacts(self, measured: BodyMeasurement, dt: float) -> None:
-        """How long each sole has been pressed by the ground, or has not been."""
-        for side in Side:
-            touches = measured.loads[side] > self._parameters.touchdown_force
-            self._touching[side] = self._touching[side] + dt if touches else 0.0
-            self._unloaded[side] = 0.0 if touches else self._unloaded[side] + dt
-
     def _change_phase(self, dt: float) -> None:
         gait = self._gait
         if gait.phase is WalkingPhase.SWING:
             self._adjust_landing(dt)
-            if self._has_landed():
+            if self._transitions.has_landed():
                 self._land()
         elif gait.phase is WalkingPhase.TRANSFER:
-            if self._landed_on_nothing():
+            if self._transitions.landed_on_nothing():
                 gait.take_back_landing()
                 self._replan()
-            elif gait.elapsed >= gait.duration or self._must_step_now():
+            elif self._transitions.must_lift_off():
                 self._end_transfer(dt)
-            elif self._must_toe_off():
+            elif self._transitions.must_toe_off():
                 gait.lift_heel()
-                self._contacts.clear()
+                self._contacts = self._touch_ground()
 
     def _end_transfer(self, dt: float) -> None:
         gait = self._gait
@@ -240,20 +239,6 @@ class Walker:
             step = gait.lift_off(T_world_sole)
             self._events.append(StepEvent(StepEventKind.STARTED, self._time, step, T_world_sole))
         self._replan()
-
-    def _landed_on_nothing(self) -> bool:
-        """Whether the foot that landed last has not been pressed since: what it felt was no ground."""
-        p, gait, side = self._parameters, self._gait, self._gait.last_side
-        if side is None or not p.phantom_time <= gait.elapsed < 2.0 * p.phantom_time or not gait.may_take_back:
-            return False
-        return self._unloaded[side] >= p.phantom_time - _ROUNDING
-
-    def _must_step_now(self) -> bool:
-        """Whether the DCM has left both feet, so that only a step can save the balance."""
-        gait = self._gait
-        if gait.step is None or gait.elapsed < self._adjustment_parameters.shortest_transfer:
-            return False
-        return gait.support().distance(self._balance.dcm) > 0.0
 
     def _adjust_landing(self, dt: float) -> None:
         """Let the foot in the air land where and when it saves the balance."""
@@ -278,22 +263,6 @@ class Walker:
         swing.retarget(swing.shift[:2] + share * wanted, landing.pace, dt)
         self._balance.replan_dcm()
 
-    def _has_landed(self) -> bool:
-        p, swing = self._parameters, self._gait.swing
-        assert swing is not None
-        side = swing.step.side
-        if swing.share > p.latest_landing:
-            return True
-        if self._touching[side] < p.touchdown_time - _ROUNDING:
-            return False
-        if swing.share >= 1.0:
-            return True
-        if swing.share < p.touchdown_share:
-            return False
-        target, sole = swing.T_world_target, self._body.sole(side)
-        off = sole.p - target.p
-        return bool(np.hypot(off[0], off[1]) < p.touchdown_distance and off[2] < p.touchdown_depth)
-
     def _land(self) -> None:
         side = self._gait.swing.step.side if self._gait.swing is not None else Side.LEFT
         T_world_sole = self._body.sole(side)
@@ -304,24 +273,24 @@ class Walker:
             self._events.append(StepEvent(StepEventKind.COMPLETED, self._time, step, T_world_sole))
         self._replan()
 
-    def _must_toe_off(self) -> bool:
-        """Whether the trailing leg is nearly straight, and its toe enough for where the CoP is."""
-        gait = self._gait
-        if gait.on_toe or gait.step is None:
-            return False
-        knee = self._model.legs[gait.step.side].joints[3]
-        if self._body.q[7 + knee] >= self._parameters.toe_off_knee:
-            return False
-        return gait.toe_support().distance(self._balance.cop) <= 0.0
-
     def _replan(self) -> None:
         gait, soles = self._gait, {side: self._body.sole(side) for side in Side}
         if gait.on_toe and gait.step is not None:
             soles[gait.step.side] = gait.stance.sole(gait.step.side)
         gait.rest_on(Stance(soles[Side.LEFT], soles[Side.RIGHT]))
-        self._contacts.clear()
+        self._contacts = self._touch_ground()
         self._balance.replan(self._body, self._yaw)
         self._dcm_at_landing = self._balance.dcm_at_landing - self._shift()
+
+    def _touch_ground(self) -> dict[Side, Contact]:
+        """Where the ground pushes the feet that stand on it."""
+        gait, contacts = self._gait, {}
+        for side in self.supports:
+            points = gait.points(side)
+            on_toe = gait.on_toe and gait.step is not None and gait.step.side is side
+            loaded = toe_points(points) if on_toe else None
+            contacts[side] = Contact.at(points, self._body_parameters.friction, loaded)
+        return contacts
 
     def _shift(self) -> Array:
         """How far the foot in the air lands from its commanded foothold, (2,) in the world [m]."""
@@ -336,83 +305,6 @@ class Walker:
             self._yaw = wrap_angle(self._yaw_from + share * wrap_angle(gait.landed_stance().yaw - self._yaw_from))
         self._yaw_rate = wrap_angle(self._yaw - before) / dt if dt > 0.0 else 0.0
 
-    def _tasks(self, balance: BalanceCommand) -> BodyTasks:
-        p, body = self._body_parameters, self._body
-        R_upright = rotation_z(self._yaw)
-        pelvis_rate = body.v[3:6]
-        torso_rate = body.torso_jacobian @ body.v
-        R_pelvis = R_upright @ rotation_y(self._parameters.pelvis_pitch)
-        turn = np.array((0.0, 0.0, self._yaw_rate))
-        posture = p.posture_stiffness * (self._posture - body.q[7:]) - p.posture_damping * body.v[6:]
-        weights = self._posture_weights
-        if self._gait.on_toe and self._gait.step is not None:
-            knee = self._model.legs[self._gait.step.side].joints[3]
-            weights = weights.copy()
-            bend = self._parameters.toe_off_knee - body.q[7 + knee]
-            posture[knee] = p.bent_knee_stiffness * bend - p.bent_knee_damping * body.v[6 + knee]
-            weights[knee] = p.bent_knee_weight
-        return BodyTasks(
-            com_acceleration=balance.com_acceleration,
-            momentum_rate=-p.momentum_damping * body.momentum[3:],
-            pelvis_acceleration=_turn_towards(
-                body.R_world_pelvis, R_pelvis, pelvis_rate, turn, p.pelvis_stiffness, p.pelvis_damping
-            ),
-            torso_acceleration=_turn_towards(
-                body.R_world_torso, R_upright, torso_rate, turn, p.torso_stiffness, p.torso_damping
-            ),
-            posture_acceleration=posture,
-            posture_weights=weights,
-            soles={side: self._sole_task(side) for side in Side},
-        )
-
-    def _sole_task(self, side: Side) -> SoleTask:
-        swing = self._gait.swing
-        if swing is not None and swing.step.side is side:
-            return self._swing_task(side)
-        return self._stance_task(side)
-
-    def _stance_task(self, side: Side) -> SoleTask:
-        p, gait, sole = self._body_parameters, self._gait, self._body.sole(side)
-        velocity = self._body.sole_velocity(side)
-        weights = np.full(6, p.stance_weight)
-        acceleration = -p.stance_damping * velocity
-        if gait.on_toe and gait.step is not None and gait.step.side is side:
-            points = gait.points(side)
-            toe = np.append(points[toe_points(points)].mean(axis=0), 0.0)
-            acceleration[:3] -= p.stance_damping * cross(velocity[3:], toe)
-            weights[4] = 0.0
-            return SoleTask(acceleration, weights, toe, self._contact(side))
-        if p.stance_stiffness > 0.0:
-            latched = gait.stance.sole(side)
-            acceleration[:3] += p.stance_stiffness * (sole.R.T @ (latched.p - sole.p))
-            acceleration[3:] += p.stance_stiffness * pin.log3(sole.R.T @ latched.R)
-        return SoleTask(acceleration, weights, _ZERO, self._contact(side))
-
-    def _swing_task(self, side: Side) -> SoleTask:
-        p, sole = self._body_parameters, self._body.sole(side)
-        swing = self._gait.swing
-        assert swing is not None
-        motion = swing.motion()
-        to_sole = sole.R.T
-        velocity = self._body.sole_velocity(side)
-        linear = to_sole @ (motion.acceleration[:3] + p.swing_stiffness * (motion.pose.p - sole.p))
-        linear += p.swing_damping * (to_sole @ motion.velocity[:3] - velocity[:3])
-        # The task is a spatial acceleration: the classical one without the part that turning makes.
-        linear -= cross(velocity[3:], velocity[:3])
-        angular = to_sole @ motion.acceleration[3:] + p.swing_stiffness * pin.log3(to_sole @ motion.pose.R)
-        angular += p.swing_damping * (to_sole @ motion.velocity[3:] - velocity[3:])
-        weights = np.array([p.swing_weight] * 3 + [p.swing_turn_weight] * 3)
-        return SoleTask(np.concatenate((linear, angular)), weights, _ZERO, None)
-
-    def _contact(self, side: Side) -> Contact:
-        """Where the ground pushes a sole; made anew when support changes."""
-        if side not in self._contacts:
-            gait, points = self._gait, self._gait.points(side)
-            on_toe = gait.on_toe and gait.step is not None and gait.step.side is side
-            loaded = toe_points(points) if on_toe else None
-            self._contacts[side] = Contact.at(points, self._body_parameters.friction, loaded)
-        return self._contacts[side]
-
     def _sample(self, balance: BalanceCommand, command: BodyCommand) -> ControlSample:
         body, omega = self._body, self._balance.omega
         dcm = body.com + body.com_velocity / omega
@@ -426,17 +318,3 @@ class Walker:
             cop_world=np.array((*balance.cmp, self._gait.stance.mid_feet[2])),
             dcm_error=self._balance.dcm_error,
         )
-
-
-def _turn_towards(R: Array, R_wanted: Array, rate: Array, turn_world: Array, stiffness: float, damping: float) -> Array:
-    """Angular acceleration of a body in its own frame that turns it to an orientation which turns itself, (3,)."""
-    return stiffness * pin.log3(R.T @ R_wanted) + damping * (R.T @ turn_world - rate)
-
-
-def _posture_weights(model: RobotModel, parameters: WholeBodyParameters) -> Array:
-    """Weight of each joint's posture, (n,): legs, back, and all others, which are arms."""
-    weights = np.full(len(model.joint_names), parameters.arm_weight)
-    weights[list(model.back)] = parameters.back_weight
-    for leg in model.legs.values():
-        weights[list(leg.joints)] = parameters.leg_weight
-    return weights
