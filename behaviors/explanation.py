@@ -71,7 +71,11 @@ def _obstacles(trace: RecordedTrace, tick: RecordedTick, path: str) -> Iterator[
 
 
 def _held_back(trace: RecordedTrace, tick: RecordedTick, parent: RecordedNode, child: RecordedNode) -> Iterator[str]:
-    siblings = [node for node in trace.nodes.values() if node.path.rpartition("/")[0] == parent.path]
+    siblings = [
+        node
+        for node in trace.nodes.values()
+        if node.path.rpartition("/")[0] == parent.path and node.path in tick.status
+    ]
     index = siblings.index(child)
     kind = parent.kind.removeprefix("reactive_")
     if kind in _GOES_ON_WITH:

@@ -77,18 +77,14 @@ class PlayedLeaf(Leaf):
                 self.ports[port].value = Unrecorded(bytes.fromhex(hashed))
 
 
-def play_back(tree: Tree, outputs: Mapping[str, Mapping[str, str]]) -> Playback:
+def play_back(tree: Tree, outputs: Mapping[str, Mapping[str, str]], playback: Playback) -> None:
     """Let every leaf that a recording has say again what it said.
 
     Args:
         tree: whose leaves are replaced before its first tick.
         outputs: of the recording's leaves, keys by port, by node path.
-
-    Returns:
-        what has to be told the tick before each tick of the tree.
+        playback: has to be told the tick before each tick of the tree.
     """
-    playback = Playback()
     for node in tree.nodes:
         if isinstance(node, LeafNode) and node.path in outputs:
             node.replace_leaf(PlayedLeaf(node.leaf, outputs[node.path], playback))
-    return playback

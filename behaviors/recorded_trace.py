@@ -45,6 +45,7 @@ class RecordedTick:
         values: as JSON, by key, of the values that are written out.
         line: what happened in this tick: `commands`, `corrections`, `events`, `operator`, `parameters`, `delivered`,
             and the `ports` and `values` that changed.
+        taken_over: path and texts of the tree that took over before this tick; None where none did.
     """
 
     tick: int
@@ -57,6 +58,7 @@ class RecordedTick:
     ports: Mapping[str, str | None]
     values: Mapping[str, Any]
     line: Mapping[str, Any]
+    taken_over: tuple[str, Mapping[str, str]] | None = None
 
     def happened(self, what: str) -> list[dict[str, Any]]:
         """The commands, events or changes of this tick; empty where there were none."""
@@ -70,8 +72,8 @@ class RecordedTrace:
         path: the file.
         tree: name of the tree.
         rate: ticks a second of robot time [Hz].
-        nodes: by path, parents before children.
-        keys: types of the keys, by name.
+        nodes: by path, parents before children; of all trees where another took over.
+        keys: types of the keys, by name; likewise.
 
     Raises:
         TraceError: where the file is missing, or no trace of this version.
@@ -90,29 +92,43 @@ class RecordedTrace:
             raise TraceError(f"{path}:1: got format {head.get('format')!r}, this version reads {FORMAT}")
         self.tree: str = head["tree"]
         self.rate: float = head["rate"]
-        self.keys: dict[str, str] = head["keys"]
-        described = (
-            RecordedNode(node["path"], node["kind"], node["parameters"], node["in"], node["out"])
-            for node in head["nodes"]
-        )
-        self.nodes = {node.path: node for node in described}
+        self.keys: dict[str, str] = {}
+        self.nodes: dict[str, RecordedNode] = {}
+        self._take(head)
         # The last line may be half written where the run was killed.
         whole = lines[1:] if lines[-1].endswith("}") else lines[1:-1]
         self._lines = [self._parse(line, number) for number, line in enumerate(whole, 2)]
+        for line in self._lines:
+            if "format" in line:
+                self._take(line)
 
     def __len__(self) -> int:
-        return len(self._lines)
+        return sum("format" not in line for line in self._lines)
+
+    def _take(self, head: dict[str, Any]) -> None:
+        for node in head["nodes"]:
+            read = RecordedNode(node["path"], node["kind"], node["parameters"], node["in"], node["out"])
+            self.nodes[read.path] = read
+        self.keys.update(head["keys"])
 
     def ticks(self) -> Iterator[RecordedTick]:
         """The state after each tick, in order."""
-        kept: dict[str, dict[str, Any]] = {"status": {}, "reason": {}, "ticked": {}, "ports": {}, "values": {}}
+        parts = ("status", "reason", "ticked", "ports", "values")
+        kept: dict[str, dict[str, Any]] = {part: {} for part in parts}
+        taken_over = None
         for line in self._lines:
+            if "format" in line:
+                kept = {part: {} for part in parts}
+                taken_over = (line["file"], line["sources"])
+                continue
             for key in line.get("ports", {}):
                 kept["values"].pop(key, None)
             for part, values in kept.items():
                 values.update(line.get(part, {}))
             copies = {part: dict(values) for part, values in kept.items()}
-            yield RecordedTick(line["tick"], line["time"], line["hash"], line["robot"], **copies, line=line)
+            head = (line["tick"], line["time"], line["hash"], line["robot"])
+            yield RecordedTick(*head, **copies, line=line, taken_over=taken_over)
+            taken_over = None
 
     def at(self, time: float) -> RecordedTick:
         """The last tick that is not later than a robot time [s].
@@ -125,7 +141,7 @@ class RecordedTrace:
             if tick.time > time + 1e-9:
                 break
             found = tick
-        last = self._lines[-1]["time"] if self._lines else 0.0
+        last = max((line["time"] for line in self._lines if "time" in line), default=0.0)
         if found is None or time > last + 1.0 / self.rate:
             raise TraceError(f"{self.path}: got time {time:g} s, the trace goes from 0 to {last:g} s")
         return found

@@ -1,8 +1,8 @@
 """The file of a trace: one line of JSON for the tree, then one for every tick with what changed in it.
 
-The first line holds `format`, `tree`, `rate`, the `nodes` with their kinds, parameters and wires, and the types of all
-`keys`. A line of a tick holds `tick`, `time`, `hash` of the run so far, `robot` (hash of the robot's state and status)
-and, where there are any,
+The first line holds `format`, `tree`, `rate`, the `nodes` with their kinds, parameters and wires, the types of all
+`keys`, and the texts of the tree's files; a tree that takes over has a line like it. A line of a tick holds `tick`,
+`time`, `hash` of the run so far, `robot` (hash of the robot's state and status) and, where there are any,
 
 - `status`, `reason` by node path, `ticked` (whether the tick visited it) and `ports` (hash by key, null for an emptied
   one), where they changed;
@@ -47,7 +47,7 @@ class TraceFile:
         self._ports: dict[str, bytes] = {}
 
     def begin(self, spec: TreeSpec, rate: float, nodes: Iterable[Node]) -> None:
-        """Write the first line."""
+        """Write the line of a tree: the first, and one wherever another tree takes over."""
         specs = {node.path: node for node in spec}
         described = []
         for node in nodes:
@@ -64,7 +64,9 @@ class TraceFile:
                 }
             )
         keys = {key: type_name(declared) for key, declared in spec.keys.items()}
-        self._write({"format": FORMAT, "tree": spec.name, "rate": rate, "nodes": described, "keys": keys})
+        head = {"format": FORMAT, "tree": spec.name, "rate": rate, "nodes": described, "keys": keys}
+        self._write({**head, "file": spec.file, "sources": dict(spec.sources)})
+        self._statuses, self._reasons, self._ticked, self._ports = {}, {}, {}, {}
 
     def write(
         self,

@@ -71,6 +71,7 @@ class Tree:
         outcome: how the run stands.
         reason: why it ended; empty while it runs.
         trace: hash and file of the run.
+        layers: where the parameters of nodes come from.
         transitions: statuses that the last tick changed, in the order of `nodes`.
         timetable: when ticks are due, and how late the last one was.
     """
@@ -103,32 +104,60 @@ class Tree:
             SettingError: where settings name a node or parameter that is not there.
             ParameterError: where a setting is out of range.
         """
-        self.spec = spec
         self.timetable = Timetable(rate)
         self.context = Context(RobotView(robot), executor or Executor(), dict(parameters or {}))
+        self.trace = trace or Trace()
+        self.transitions: tuple[Transition, ...] = ()
+        self._delivered: tuple[str, ...] = ()
+        self._pending_inputs: list[tuple[str, Any]] = []
+        self._pending_events: list[OperatorEvent] = []
+        self._changes: list[ParameterChange] = []
+        self._ticks = 0
+        self._build(spec, Layers(defaults or {}, settings or {}))
+
+    def _build(self, spec: TreeSpec, layers: Layers) -> None:
+        """Make the nodes and the blackboard; all that a run has besides stays as it is."""
+        layers.check_targets(spec)
+        self.spec = spec
+        self.layers = layers
         self.blackboard = Blackboard()
         for key, declared in spec.keys.items():
             self.blackboard.slot(key, declared)
-        layers = Layers(defaults or {}, settings or {})
-        layers.check_targets(spec)
         self.root = build_node(spec.root, self.context, self.blackboard, spec, layers)
         stop = spec.safe_stop
         self.safe_stop = None if stop is None else build_node(stop, self.context, self.blackboard, spec, layers)
         self.nodes: tuple[Node, ...] = self.root.nodes + (() if self.safe_stop is None else self.safe_stop.nodes)
         self.outcome = Outcome.RUNNING
         self.reason = ""
-        self.trace = trace or Trace()
-        self.transitions: tuple[Transition, ...] = ()
         self._slots = self.blackboard.slots
         self._nodes_by_path = {node.path: node for node in self.nodes}
         self._statuses = [node.status for node in self.nodes]
-        self._pending_inputs: list[tuple[str, Any]] = []
-        self._pending_events: list[OperatorEvent] = []
-        self._changes: list[ParameterChange] = []
-        self._delivered: tuple[str, ...] = ()
-        self._ticks = 0
         self._is_set_up = False
         self._is_stopped = False
+        self._is_traced = False
+
+    def reload(self, spec: TreeSpec) -> None:
+        """Let another tree take over between two ticks: what runs is stopped, once, and the new one begins.
+
+        Settings of nodes that it has not are dropped; what was changed live is forgotten. The trace goes on.
+
+        Raises:
+            SettingError, ParameterError: where a setting does not fit any more; the old tree stays.
+        """
+        paths = {node.path for node in spec}
+        settings = {path: values for path, values in self.layers.settings.items() if path in paths}
+        layers = Layers(self.layers.defaults, settings)
+        for node in spec:
+            layers.parameters(node)
+        self.root.stop(Status.INVALID)
+        if self.safe_stop is not None:
+            self.safe_stop.stop(Status.INVALID)
+        self._build(spec, layers)
+
+    @property
+    def pending_events(self) -> tuple[OperatorEvent, ...]:
+        """What the operator did that the next tick will see."""
+        return tuple(self._pending_events)
 
     @property
     def next_tick_time(self) -> float:
@@ -303,7 +332,8 @@ class Tree:
         context = self.context
         happened = Happened(context.operator_events, changes, self._delivered)
         try:
-            if context.tick == 0:
+            if not self._is_traced:
+                self._is_traced = True
                 self.trace.begin(self.spec, 1.0 / self.timetable.period, self.nodes, self._slots)
             self.trace.record(context.tick, context.time, self.nodes, self._slots, context.robot, happened)
         except Exception as error:

@@ -25,6 +25,7 @@ class RunOptions:
         preset: name of a shipped preset, or a YAML file.
         assignments: `subject.key=value`, `course.option=value` or `/node/path.key=value`.
         live: file of parameters that is read again whenever it is saved; none where None.
+        reload: whether a tree file that is saved meanwhile takes over at the next goal.
         record: recording file to write.
         faults: file of faults to inject; none where None.
         plans: folder for the log of every footstep plan.
@@ -42,6 +43,7 @@ class RunOptions:
     preset: str | None = None
     assignments: tuple[str, ...] = ()
     live: Path | None = None
+    reload: bool = False
     record: Path | None = None
     faults: Path | None = None
     plans: Path | None = None

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -97,7 +97,7 @@ def replay(folder: Path, options: ReplayOptions, progress: Progress = lambda don
         playback = _play_back(tree, trace, folder) if options.outputs else None
         try:
             fixed = {(change, key) for change, values in assignments.nodes.items() for key in values}
-            _drive(tree, robot, world, trace, playback, fixed, progress)
+            _drive(tree, robot, world, trace, playback, fixed, progress, follows=options.tree is None)
         finally:
             tree.shutdown()
         diff = diff_traces(trace, RecordedTrace(file))
@@ -146,7 +146,8 @@ def _tree(
 
 
 def _play_back(tree: Tree, trace: RecordedTrace, folder: Path) -> Playback:
-    playback = play_back(tree, {path: node.outputs for path, node in trace.nodes.items()})
+    playback = Playback()
+    play_back(tree, _outputs(trace), playback)
     written: set[str] = set()
     for tick in trace.ticks():
         written |= {key for key, hashed in tick.ports.items() if hashed is not None and key not in tick.values}
@@ -162,6 +163,10 @@ def _play_back(tree: Tree, trace: RecordedTrace, folder: Path) -> Playback:
     return playback
 
 
+def _outputs(trace: RecordedTrace) -> dict[str, Mapping[str, str]]:
+    return {path: node.outputs for path, node in trace.nodes.items()}
+
+
 def _drive(
     tree: Tree,
     robot: FollowingRobot,
@@ -170,11 +175,18 @@ def _drive(
     playback: Playback | None,
     fixed: set[tuple[str, str]],
     progress: Progress,
+    *,
+    follows: bool,
 ) -> None:
-    """Tick the tree through all recorded ticks."""
+    """Tick the tree through all recorded ticks; where it `follows`, trees take over as they did."""
     end = max((tick.time for tick in trace.ticks()), default=0.0)
     for tick in trace.ticks():
         world.advance(tree.next_tick_time - world.time)
+        if follows and tick.taken_over is not None:
+            file, texts = tick.taken_over
+            tree.reload(load_tree(file, texts=texts))
+            if playback is not None:
+                play_back(tree, _outputs(trace), playback)
         if playback is not None:
             playback.tick = tick
         _apply(tree, tick, fixed)

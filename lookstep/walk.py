@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 import time as wall
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,6 +15,7 @@ import numpy as np
 
 from behaviors import Executor, ExecutorMode, OperatorEvent, Robot, SettingError, Trace, Tree, TreeSpec, load_tree
 from behaviors import Outcome as TreeOutcome
+from behaviors.faults import Fault
 from lookstep.configuration import Assignments, Configuration, load_configuration, split_assignments
 from lookstep.errors import UserError
 from lookstep.faults import break_leaves, faulty_course, faulty_robot, load_faults
@@ -25,6 +26,7 @@ from lookstep.plan_log import PlanRecorder
 from lookstep.run_file import RUN_FILE, TRACE_FILE, RunFile
 from lookstep.statistics import Statistics
 from lookstep.summary import Outcome, Summary, installed_versions
+from lookstep.tree_reload import TreeReload
 from lookstep.trees import tree_path
 from lookstep.warm_up import warm_up
 from lookstep.world import build_world
@@ -89,7 +91,7 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
         watching.append(plans)
     try:
         goal = Goal(*(options.goal or course.goal))
-        ending = _loop(world, tree, watching, options, goal, configuration.judge.goal_distance)
+        ending = _loop(world, tree, watching, options, goal, configuration.judge.goal_distance, faults)
     finally:
         tree.shutdown()
         if recording is not None:
@@ -116,17 +118,22 @@ def _loop(
     options: RunOptions,
     goal: Goal,
     goal_distance: float,
+    faults: Sequence[Fault],
 ) -> _Ending:
     pace = _Pace(_speed(options))
-    live = None if options.live is None else LiveParameters(options.live, tree)
+    watches: list[LiveParameters | TreeReload] = []
+    if options.live is not None:
+        watches.append(LiveParameters(options.live, tree))
+    if options.reload:
+        watches.append(TreeReload(tree, lambda reloaded: break_leaves(reloaded, faults)))
     tree.send(OperatorEvent("goal", goal))
     outcome, reason = None, ""
     try:
         while outcome is None:
             world.advance(tree.next_tick_time - world.time)
             pace.wait_until(world.time)
-            if live is not None:
-                live.poll()
+            for watch in watches:
+                watch.poll()
             tree.tick()
             moment = _moment(world, tree)
             for observer in watching:

@@ -42,6 +42,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="read target.key: value from this YAML file whenever it is saved while the robot walks",
     )
+    parser.add_argument(
+        "--reload", action="store_true", help="a tree file that is saved meanwhile takes over at the next goal (--live)"
+    )
     parser.add_argument("--record", type=Path, metavar="RRD", help="write a recording for the rerun viewer")
     parser.add_argument("--plans", type=Path, metavar="DIR", help="log every footstep plan with its search here")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json and trace.jsonl into this folder")
@@ -63,6 +66,7 @@ def execute(options: argparse.Namespace) -> int:
         assignments=tuple(options.assignments),
         faults=options.faults,
         live=options.live,
+        reload=options.reload,
         record=options.record,
         plans=options.plans,
         out=options.out,

@@ -78,6 +78,7 @@ class Recording:
         self._deadline_lanes: set[str] = set()
         self._log_static(about)
         self._links = self._log_links(world)
+        self._spec = tree.spec
         self._lanes = self._log_lanes(tree.nodes)
 
     def observe(self, moment: Moment) -> None:
@@ -174,6 +175,9 @@ class Recording:
                 pass
 
     def _log_tree(self, moment: Moment) -> None:
+        if moment.tree.spec is not self._spec:  # Another tree has taken over.
+            self._spec = moment.tree.spec
+            self._lanes = self._log_lanes(moment.tree.nodes)
         for transition in moment.tree.transitions:
             self._columns.state(self._lanes[transition.path], moment.time, _STATES[transition.after])
         for node in moment.tree.nodes:

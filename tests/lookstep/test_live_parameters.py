@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+from behaviors.recorded_trace import RecordedTrace
 from lookstep.options import RunOptions
 from lookstep.replay import ReplayOptions, replay
 from lookstep.walk import walk
@@ -60,3 +61,30 @@ def test_saved_parameters_are_applied_between_ticks_recorded_and_replayed(tmp_pa
     assert any(text.startswith('4:13: no node or subject "/nothing"') for text in warnings)
     diff = replay(tmp_path / "out", ReplayOptions()).diff
     assert diff.identical and summary.trace_hash == lines[-1]["hash"]
+
+
+def test_a_tree_that_is_saved_takes_over_at_the_next_goal_and_the_run_replays(tmp_path: Path):
+    tree, live = tmp_path / "mine.yaml", tmp_path / "live.yaml"
+    text = "tree: mine\nroot:\n  sequence:\n    - WaitForGoal: {out: [goal]}\n    - Wait: {duration: 9}\n"
+    tree.write_text(text)
+
+    class Editor(Person):
+        def observe(self, moment) -> None:
+            super().observe(moment)
+            if moment.time == 0.2:
+                tree.write_text(text.replace("9", "x"))
+            if moment.time == 0.4:
+                tree.write_text(text.replace("duration: 9", "duration: 8"))
+
+    person = Editor(live, {0.3: "goal: [1, 0, 0]\n", 0.5: "goal: [2, 0, 0]\n"})
+    options = RunOptions(
+        tree=str(tree), course="flat", world="kinematic", time_limit=1.0, live=live, reload=True, out=tmp_path / "out"
+    )
+    walk(options, person)
+    assert any(text.startswith(f"{tree} is not reloaded: {tree}:5:24:") for text in person.said)
+    assert f"{tree} was saved and has taken over" in person.said
+    trace = RecordedTrace(tmp_path / "out" / "trace.jsonl")
+    assert [round(tick.time, 2) for tick in trace.ticks() if tick.taken_over] == [0.52]
+    tree.unlink()
+    assert replay(tmp_path / "out", ReplayOptions()).diff.identical
+    assert replay(tmp_path / "out", ReplayOptions(outputs=True)).diff.identical
