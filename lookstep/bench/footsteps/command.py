@@ -1,4 +1,4 @@
-"""`lookstep bench footsteps`: whole plans over planar-region maps, and plans of three steps as in a walk."""
+"""`lookstep bench footsteps`: whole plans over planar-region maps, and the plans of walks."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ def measure(options: argparse.Namespace, progress: Progress) -> Report:
     configuration = load_configuration(None, options.assignments)
     return bench_footsteps(
         options.data,
-        configuration.footsteps,
-        configuration.terrain,
+        configuration,
+        tuple(options.assignments),
         progress,
         quick=options.quick,
         pictures=options.pictures,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from lookstep.bench.footsteps.reference_times import reference_ms
 from lookstep.bench.timing import Timing, timed
 from skills.footsteps import (
     FootstepParameters,
@@ -40,7 +41,13 @@ class MapFigures:
         """Whether both feet end at the goal."""
         return self.plan.outcome is PlanOutcome.GOAL_REACHED
 
-    def as_json(self) -> dict[str, str | int | float]:
+    @property
+    def times_faster(self) -> float | None:
+        """The reference time over ours; None where there is none, or no plan."""
+        reference = reference_ms(self.region_map.name)
+        return reference / self.timing.median_ms if reference is not None and self.solved else None
+
+    def as_json(self) -> dict[str, str | int | float | None]:
         """The figures under the names that programs read."""
         return {
             "outcome": self.plan.outcome.value,
@@ -50,6 +57,7 @@ class MapFigures:
             "median_ms": self.timing.median_ms,
             "p99_ms": self.timing.p99_ms,
             "expansions": self.plan.expansions,
+            "times_faster": None if self.times_faster is None else round(self.times_faster, 2),
         }
 
 

@@ -75,9 +75,12 @@ def explanation(seed: int) -> str:
     stones, x = scene(seed), GOAL.search_arc_length
     if np.isinf(FootholdMilp(stones, PARAMETERS, x).cost(STANCE, Side.LEFT, MOST_STEPS)):
         return "its sole stands over an edge by less than a cell of the raster"
-    for lattice in (0.01, 0.005):
-        if np.isfinite(searched(stones, lattice, 0.005)):
-            return f"its feet lie between nodes 2 cm apart; found {100 * lattice:g} cm apart"
+    if np.isfinite(searched(stones, 0.01, 0.005)):
+        return "its feet lie between nodes 2 cm apart; found 1 cm apart"
+    for shrink in (0.0025, 0.005, 0.01):
+        tight = FootholdMilp(stones, PARAMETERS, x, shrink=shrink)
+        if np.isinf(tight.cost(STANCE, Side.LEFT, MOST_STEPS)):
+            return f"no foot of it has {1e3 * shrink:g} mm to spare, which rounding to nodes takes"
     return ""
 
 
