@@ -89,7 +89,7 @@ class FootstepParameters:
     wiggle_turn: float = parameter(0.04, unit="rad", meaning="largest turn for it", minimum=0.0, maximum=0.5)
 
     swing_height: float = parameter(0.08, unit="m", meaning="rise above the higher foothold", minimum=0.0, maximum=0.4)
-    swing_way: float = parameter(1.1, unit="m", meaning="way in the air for which the time suffices", minimum=0.1)
+    swing_way: float = parameter(0.95, unit="m", meaning="way in the air for which the time suffices", minimum=0.1)
     swing_clearance: float = parameter(0.05, unit="m", meaning="height above all ground on the way", minimum=0.0)
     swing_margin: float = parameter(0.02, unit="m", meaning="ground beside the way that counts as on it", minimum=0.0)
     swing_leg_clearance: float = parameter(0.03, unit="m", meaning="height above ground while it rises", minimum=0.0)

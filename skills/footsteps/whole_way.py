@@ -51,8 +51,13 @@ def plan_whole_way(
 
     Returns:
         The plan; its outcome is GOAL_REACHED with both feet at the goal, PARTIAL or BLOCKED where that was not found.
+
+    Raises:
+        ValueError: where the goal is not four finite numbers.
     """
     goal = np.asarray(goal_world, dtype=np.float64)
+    if goal.shape != (4,) or not np.all(np.isfinite(goal)):
+        raise ValueError(f"goal_world: got {goal.tolist()}, needs four finite numbers x, y, z, yaw")
     low, high = _window(regions, stance.mid_feet[:2], goal[:2])
     terrain = region_terrain(regions, low, high, terrain_parameters)
     target, reachable = _target(terrain, stance, goal, parameters)

@@ -4,6 +4,7 @@ from open_loop import generated, random_field, rectangle, region_map, swing_star
 
 from skills.footsteps import FootstepParameters, SwingClearance, Terrain, TerrainParameters, region_terrain
 from skills.footsteps import swing_clearance as find_way
+from skills.footsteps.planned_steps import swing_duration
 from skills.geometry.pose import Array, Pose
 
 PARAMETERS = FootstepParameters()
@@ -105,3 +106,20 @@ def test_walls_anywhere_on_the_way_are_cleared(x: float, height: float):
     )
     whole, _ = smallest_clearance(terrain, start, find_way(terrain, start, end, PARAMETERS), end)
     assert whole >= min(rest, -EDGE)
+
+
+@pytest.mark.parametrize(("length", "rise"), [(0.7, 0.0), (1.3, 0.0), (0.7, 0.3)])
+def test_long_and_high_steps_take_longer(length: float, rise: float):
+    ground = region_map(rectangle((0.0, 0.0, 0.0), size=(0.4, 1.0)), rectangle((length, 0.0, rise), size=(0.4, 1.0)))
+    terrain = region_terrain(ground, np.array((-1.0, -1.0)), np.array((2.0, 1.0)), TerrainParameters())
+    start, end = Pose.from_xyz_rpy((0.0, 0.0, 0.0)), Pose.from_xyz_rpy((length, 0.0, rise))
+    way = find_way(terrain, start, end, PARAMETERS)
+    corners = np.stack((start.p, *way.waypoints_world, end.p))
+    travelled = np.linalg.norm(np.diff(corners, axis=0), axis=1).sum()
+    duration = swing_duration(start, end, way, PARAMETERS)
+    if travelled <= PARAMETERS.swing_way:
+        assert duration == PARAMETERS.swing_duration
+    else:
+        # No faster on average than over the way for which the time suffices.
+        assert travelled / duration == pytest.approx(PARAMETERS.swing_way / PARAMETERS.swing_duration)
+    assert (duration > PARAMETERS.swing_duration) == (length > 1.0 or rise > 0.0)

@@ -109,13 +109,25 @@ def test_foothold_is_the_supported_part_of_the_sole():
     assert found.usable and 0.7 < found.share < 1.0
     assert found.T_world_sole is not None
     polygon = ledge.foothold_polygon(found.T_world_sole, partial)
-    assert polygon[:, 0].max() == pytest.approx(0.08, abs=0.015)
+    assert polygon[:, 0].max() == pytest.approx(0.08, abs=1e-9)  # The ledge ends at x = 0.1.
     np.testing.assert_allclose(polygon[:, 0].min(), -0.13)
     np.testing.assert_allclose(np.abs(polygon[:, 1]).max(), 0.069)
     area = 0.5 * np.sum(polygon[:, 0] * np.roll(polygon[:, 1], -1) - polygon[:, 1] * np.roll(polygon[:, 0], -1))
     assert area > 0.0
     whole = ledge.foothold_polygon(Pose.from_xyz_rpy((-0.3, 0.0, 0.0)), PARAMETERS)
     assert {tuple(np.round(v, 9)) for v in whole} == {tuple(np.round(v, 9)) for v in whole_sole(PARAMETERS)}
+
+
+def test_foothold_on_two_tilted_planes_ends_where_one_leaves_the_sole():
+    """A crease under the sole: the far side falls away, and carries as far as it is no deeper than allowed."""
+    near = rectangle((-0.5, 0.0, 0.0), size=(1.0, 1.0))
+    far = rectangle((0.5 * np.cos(0.2), 0.0, -0.5 * np.sin(0.2)), (0.0, 0.2, 0.0), size=(1.0, 1.0))
+    partial = FootstepParameters(share=0.3)
+    ground = terrain(near, far)
+    found = ground.snap(-0.05, 0.0, 0.0, partial)
+    assert found.usable and found.T_world_sole is not None
+    polygon = ground.foothold_polygon(found.T_world_sole, partial)
+    assert polygon[:, 0].max() == pytest.approx(0.05 + partial.support_below / np.tan(0.2), abs=1e-9)
 
 
 def test_degenerate_and_vertical_regions_are_left_out():
