@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from lookstep.bench.footsteps import command as footsteps
 from lookstep.bench.perception import command as perception
 from lookstep.bench.tree import command as tree
+from lookstep.bench.walking import command as walking
 from lookstep.errors import UserError
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ NAME = "bench"
 HELP = "measure one part beside ground truth, baselines and peers"
 EXAMPLE = "lookstep bench perception --quick"
 
-SUBJECTS: tuple[Subject, ...] = (perception, footsteps, tree)
+SUBJECTS: tuple[Subject, ...] = (perception, footsteps, walking, tree)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

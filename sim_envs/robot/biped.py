@@ -59,6 +59,12 @@ class Biped(composer.Entity):
         return self._description
 
     @property
+    def pelvis(self) -> mjcf.Element:
+        """The body that the others hang on."""
+        root: Any = self._mjcf_root
+        return root.worldbody.body[0]
+
+    @property
     def camera_body(self) -> mjcf.Element:
         """The body that carries the depth camera."""
         return self._camera_body

@@ -17,6 +17,7 @@ from skills.parameters import parameter, parameters
 from skills.walking.support_polygon import SupportPolygon
 from skills.walking.walking_state import RobotState, WalkingPhase, WalkingStatus
 
+_ROUNDING = 1e-9
 _SAMPLES_ALONG, _SAMPLES_ACROSS = 9, 5  # about every 3 cm of the sole
 
 
@@ -36,21 +37,37 @@ class FallParameters:
     support_tolerance: float = parameter(
         0.02, unit="m", minimum=0.0, maximum=0.5, meaning="how far from the sole ground still supports it"
     )
+    check_period: float = parameter(
+        0.01, unit="s", minimum=0.001, maximum=0.1, meaning="time between looks at DCM and swing"
+    )
     standing_check_period: float = parameter(
         0.5, unit="s", minimum=0.01, maximum=10.0, meaning="time between looks at the ground under a standing robot"
     )
 
 
 class FallDetector:
-    """Watches a walk against the true ground."""
+    """Watches a walk against the true ground.
+
+    Args:
+        parameters: what counts as a fall.
+        description: of the robot.
+    """
 
     def __init__(self, parameters: FallParameters, description: RobotDescription) -> None:
         self._parameters = parameters
         self._corners_sole = np.column_stack((description.sole_corners_sole, np.zeros(4)))
         self._samples_sole = _sole_samples(description)
+        self._next_check = 0.0
         self._looked_at_support: tuple[WalkingPhase, int] | None = None
         self._soles: tuple[Pose, ...] = ()
         self._polygon: SupportPolygon | None = None
+
+    def due(self, time: float) -> bool:
+        """Whether it is time for another look, at a robot time [s]."""
+        if time < self._next_check - _ROUNDING:
+            return False
+        self._next_check = time + self._parameters.check_period
+        return True
 
     def check(self, state: RobotState, status: WalkingStatus, ground: Ground) -> str:
         """Why the robot has fallen, in one sentence; empty while it has not.

@@ -50,6 +50,9 @@ class PhysicsParameters:
         0.0, unit="rad/s", minimum=0.0, maximum=2.0, meaning="standard deviation of joint rates"
     )
     friction: float = parameter(0.8, unit="1", minimum=0.1, maximum=2.0, meaning="coefficient of friction of the soles")
+    torso_mass_error: float = parameter(
+        0.0, unit="1", minimum=-0.5, maximum=1.0, meaning="share by which the torso is heavier than the robot believes"
+    )
 
 
 class PhysicsBody:
@@ -61,6 +64,7 @@ class PhysicsBody:
         parameters: rates and errors.
         prefix: of the robot's names in the model.
         seed: of the noise.
+        torso: name of the body whose mass may be off.
     """
 
     def __init__(
@@ -71,8 +75,10 @@ class PhysicsBody:
         parameters: PhysicsParameters,
         prefix: str,
         seed: int,
+        torso: str = "torso",
     ) -> None:
         self._model, self._data, self._walker, self._parameters = model, data, walker, parameters
+        _make_true(model, parameters, prefix, torso)
         self._rng = np.random.default_rng((seed, _STREAM))
         self._substeps = max(1, round(1.0 / (parameters.control_rate * model.opt.timestep)))
         self._delayed: deque[Array] = deque()
@@ -126,3 +132,13 @@ class PhysicsBody:
             torques = torques + self._parameters.torque_noise * self._effort * noise
         self._delayed.append(torques)
         return self._delayed.popleft() if len(self._delayed) > self._delay else self._delayed[0]
+
+
+def _make_true(model: mujoco.MjModel, parameters: PhysicsParameters, prefix: str, torso: str) -> None:
+    """Give a compiled model what physics has and the robot does not know."""
+    model.opt.timestep = parameters.time_step
+    for side in Side:
+        model.geom(f"{prefix}{side.value}_foot_collision").friction[0] = parameters.friction
+    body = model.body(f"{prefix}{torso}")
+    body.mass[:] *= 1.0 + parameters.torso_mass_error
+    body.inertia[:] *= 1.0 + parameters.torso_mass_error

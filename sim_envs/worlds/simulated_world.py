@@ -204,6 +204,17 @@ class SimulatedWorld:
         while self._body.next_time <= self._asked_time + _ROUNDING:
             self._control_step()
 
+    def push(self, force_world: Array) -> None:
+        """Push the pelvis with a force (3,) [N] until told otherwise; zero ends it.
+
+        Raises:
+            ValueError: in the kinematic world, which knows no forces.
+        """
+        if self.kind is not WorldKind.PHYSICS:
+            raise ValueError(f"the {self.kind.value} world knows no forces, only {WorldKind.PHYSICS.value} does")
+        pelvis = self._index(self._biped.pelvis)
+        self.physics.data.ptr.xfrc_applied[pelvis, :3] = force_world
+
     def box_poses(self) -> dict[str, tuple[tuple[float, ...], tuple[float, ...]]]:
         """Position (3) [m] and quaternion wxyz (4) of every box of the course by name."""
         return dict(self._told_box_poses)
@@ -238,7 +249,7 @@ class SimulatedWorld:
         self._look()
 
     def _check_fall(self) -> None:
-        if not self._walker.fallen:
+        if not self._walker.fallen and self._falls.due(self.time):
             failure = self._falls.check(self.true_state(), self._walker.status(), self.ground)
             if failure:
                 self._walker.fall(failure)
@@ -268,7 +279,7 @@ class SimulatedWorld:
         data = self.physics.data.ptr
         if self.kind is WorldKind.PHYSICS:
             prefix = f"{self._biped.mjcf_model.model}/"
-            return PhysicsBody(self.model, data, self._walker, physics, prefix, seed)
+            return PhysicsBody(self.model, data, self._walker, physics, prefix, seed, self.robot.torso_body)
         return KinematicBody(data, self._walker, model, kinematic, self.robot, lambda: self.ground)
 
     def _place_shapes(self) -> None:

@@ -9,7 +9,7 @@ from small_worlds import slab, steps, world
 
 from behaviors.robot import Robot, World
 from sim_envs.courses import Box, BoxEvent
-from sim_envs.worlds import SimulatedWorld, StateDriftParameters, WorldKind
+from sim_envs.worlds import PhysicsParameters, SimulatedWorld, StateDriftParameters, WorldKind
 from skills.footsteps.footstep import Side
 from skills.geometry.pose import Pose
 from skills.walking import StepEventKind, WalkingPhase
@@ -216,3 +216,26 @@ def test_a_drifting_estimate_leaves_the_truth_and_commands_follow_the_estimate()
     it.advance(3.0)
     np.testing.assert_allclose(it.true_state().stance.T_world_left.p, true.stance.T_world_left.p, atol=3e-3)
     assert it.status().failure == ""
+
+
+def test_physics_gets_what_its_parameters_say_and_the_robot_does_not_know():
+    physics = PhysicsParameters(friction=0.55, time_step=0.0005, torso_mass_error=0.1)
+    it, plain = (SimulatedWorld(world().course, WorldKind.PHYSICS, physics=p) for p in (physics, PhysicsParameters()))
+    assert it.model.opt.timestep == 0.0005
+    assert it.model.geom("atlas_class/left_foot_collision").friction[0] == 0.55
+    assert it.model.body("atlas_class/torso").mass[0] == pytest.approx(
+        1.1 * plain.model.body("atlas_class/torso").mass[0]
+    )
+
+
+def test_a_push_moves_the_dcm_by_its_impulse():
+    it = SimulatedWorld(world().course, WorldKind.PHYSICS)
+    it.advance(0.5)
+    before = it.true_state().dcm_world
+    it.push(np.array((0.0, 3000.0, 0.0)))
+    it.advance(0.01)
+    it.push(np.zeros(3))
+    mass, omega = float(it.model.body_mass.sum()), np.sqrt(9.81 / 1.12)
+    assert (it.true_state().dcm_world - before)[1] == pytest.approx(30.0 / mass / omega, rel=0.1)
+    with pytest.raises(ValueError, match="knows no forces"):
+        world().push(np.zeros(3))

@@ -1,0 +1,1 @@
+"""Walking over known footsteps: success over seeds, compute times, solvers side by side."""
