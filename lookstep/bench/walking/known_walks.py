@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_envs.courses import Box, Course
+from skills.footsteps import FootstepParameters
 from skills.footsteps.footstep import Footstep, Side
 from skills.geometry.pose import Array, Pose, rotation_x, rotation_y, rotation_z
 
@@ -21,7 +22,12 @@ _SEAM = 0.005  # between pads and blocks [m]
 _LEAD = 0.38  # at least this far from the feet on a pad to the middle of the next block [m]
 _PAD = (1.2, 1.2, 0.2)  # [m]
 _CLEARANCE = 0.10  # of a swing over the higher end of its way [m]
-_SOLE = 0.5 * np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]]) * (0.26, 0.138)
+_CORNERS = np.array([[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]])
+_SOLE = 0.5 * _CORNERS * (0.26, 0.138)
+# Where else a sole's centre may land, as the planner tells it: level ground, a whole block, or nowhere.
+_ANYWHERE = FootstepParameters().landing_move * _CORNERS
+_ON_BLOCK = _CORNERS * (0.5 * np.array(_BLOCK[:2]) - _SOLE[0] - FootstepParameters().landing_margin)
+_NOWHERE_ELSE = np.zeros((0, 2))
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +84,7 @@ def flat_walk(count: int, cadence: Cadence, rng: np.random.Generator, *, turn: f
             yaw += turn
             middle = middle + rotation_z(yaw) @ (cadence.length, 0.0, 0.0)
         p = middle + rotation_z(yaw) @ (0.0, 0.5 * STANCE_WIDTH * side.sign, 0.0)
-        steps.append(_step(index, side, Pose(rotation_z(yaw), p), cadence))
+        steps.append(_step(index, side, Pose(rotation_z(yaw), p), cadence, landing_region_sole=_ANYWHERE))
         side = side.opposite
     goal = (float(middle[0]), float(middle[1]), yaw)
     extent = 2.0 * (count * cadence.length + 2.0)
@@ -117,7 +123,7 @@ def block_walk(
             np.array((0.0, 0.0, rng.uniform(-1.0, 1.0) * errors.height)),
         )
         blocks.append(_block(index, T_world_sole @ T_sole_top, _BLOCK))
-        steps.append(_step(index, side, T_world_sole, cadence, clearance))
+        steps.append(_step(index, side, T_world_sole, cadence, clearance, landing_region_sole=_ON_BLOCK))
         side = side.opposite
     return _with_pads("blocks", blocks, steps, side, cadence, clearance)
 
@@ -170,6 +176,7 @@ def _step(
     cadence: Cadence,
     clearance: float = _CLEARANCE,
     foothold_sole: Array = _SOLE,
+    landing_region_sole: Array = _NOWHERE_ELSE,
 ) -> Footstep:
     return Footstep(
         sequence_id=index,
@@ -180,6 +187,7 @@ def _step(
         transfer_duration=cadence.transfer,
         swing_height=clearance,
         swing_waypoints_world=np.zeros((0, 3)),
+        landing_region_sole=landing_region_sole,
     )
 
 

@@ -82,7 +82,9 @@ def log_programs(walk: KnownWalk, configuration: Configuration, most: int) -> li
         with _logging(programs):
             world.advance(_RUN)
         world.advance(_RUNS_APART - _RUN)
-    return programs[:most]
+    size = max(len(program.q) for program in programs)
+    # Step adjustment has small programs of its own.
+    return [program for program in programs if len(program.q) == size][:most]
 
 
 def compare_solvers(programs: Sequence[Program], parameters: WholeBodyParameters) -> list[SolverFigures]:

@@ -10,10 +10,10 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
+from itertools import count
 from typing import Any
 from unittest import mock
 
-import numpy as np
 import osqp
 
 from lookstep.bench.timing import Timing
@@ -24,22 +24,25 @@ from lookstep.world import build_world
 from skills.walking import Walker
 from skills.walking.balance import Balance
 from skills.walking.body_dynamics import BodyDynamics
-from skills.walking.quadratic_program import OsqpSolver
+from skills.walking.step_adjustment import StepAdjustment
 from skills.walking.whole_body_controller import WholeBodyController
 
 _PERIOD = 0.1  # The calibration kernel runs this often, in robot time [s].
+_DETAILED = 3  # Every third of these periods is measured part by part.
 _WARM_UP = 0.5  # not measured [s]
 
-# Class and method of each part; some hold others.
+# Class and method of each part. A part's time is without that of parts that it calls.
+_TICK = "gait_and_tasks"
 _METHODS: dict[str, tuple[type, str]] = {
-    "tick": (Walker, "control"),
+    _TICK: (Walker, "control"),
     "dynamics": (BodyDynamics, "update"),
     "balance": (Balance, "control"),
-    "whole_body": (WholeBodyController, "solve"),
-    "solver": (OsqpSolver, "solve"),
+    "step_adjustment": (StepAdjustment, "landing"),
+    "program": (WholeBodyController, "solve"),
     "factorise": (osqp.OSQP, "update"),
     "iterate": (osqp.OSQP, "solve"),
 }
+_WITHOUT_PARTS = "step_adjustment"  # has a small program of its own
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +52,7 @@ class TickTimes:
     Attributes:
         ticks: how many were measured.
         tick: of whole ticks.
-        parts: of each part by its name; they add up to a tick.
+        parts: own time of each part by its name, from other ticks than the whole ones.
         calibration: of the calibration kernel in the same run.
     """
 
@@ -91,18 +94,22 @@ class RealtimeFactor:
 
 def measure_ticks(walks: Iterator[KnownWalk], configuration: Configuration, ticks: int) -> TickTimes:
     """Walk one walk after another until so many ticks are measured."""
-    kernel = CalibrationKernel()
-    times: dict[str, list[float]] = {name: [] for name in _METHODS}
-    while len(times["tick"]) < ticks:
+    # Looking at the clock costs time as well: whole ticks are measured without looking at their parts.
+    kernel, whole, detailed = CalibrationKernel(), _Watch((_TICK,)), _Watch(tuple(_METHODS))
+    while len(whole.ticks) < ticks:
         walk = next(walks)
         world = build_world(walk.course, configuration, "physics")
         world.advance(_WARM_UP)
         world.send_footsteps(walk.steps)
-        with _measured(times):
-            while world.time < walk.duration and len(times["tick"]) < ticks:
+        for index in count():
+            if world.time > walk.duration or len(whole.ticks) >= ticks:
+                break
+            with (detailed if index % _DETAILED == 0 else whole).watching():
                 world.advance(_PERIOD)
-                kernel.run()
-    return TickTimes(len(times["tick"]), Timing.of(times["tick"]), _parts(times), Timing.of(kernel.times))
+            kernel.run()
+    tick = Timing.of([parts[_TICK] for parts in whole.ticks])
+    parts = {name: Timing.of([parts[name] for parts in detailed.ticks]) for name in _METHODS}
+    return TickTimes(len(whole.ticks), tick, parts, Timing.of(kernel.times))
 
 
 def measure_realtime(walk: KnownWalk, configuration: Configuration, kind: str) -> RealtimeFactor:
@@ -117,39 +124,46 @@ def measure_realtime(walk: KnownWalk, configuration: Configuration, kind: str) -
     return RealtimeFactor(kind, round(factor, 2), rate)
 
 
-def _parts(times: dict[str, list[float]]) -> dict[str, Timing]:
-    """Own time of each part: what it holds of other parts is taken out."""
-    at = {name: np.array(values) for name, values in times.items()}
-    outside = at["tick"] - at["dynamics"] - at["balance"] - at["whole_body"]
-    parts = {
-        "dynamics": at["dynamics"],
-        "balance": at["balance"],
-        "program": at["whole_body"] - at["factorise"] - at["iterate"],
-        "factorise": at["factorise"],
-        "iterate": at["iterate"],
-        "gait_and_tasks": outside,
-    }
-    return {name: Timing.of(list(values)) for name, values in parts.items()}
+class _Watch:
+    """Notes how long each part of each tick takes, without the parts that it calls [s]."""
 
+    def __init__(self, parts: tuple[str, ...]) -> None:
+        self._parts = parts
+        self.ticks: list[dict[str, float]] = []
+        self._open: list[str] = []
+        self._last = 0.0
 
-@contextmanager
-def _measured(times: dict[str, list[float]]) -> Iterator[None]:
-    """Let the methods note their times."""
-    with ExitStack() as stack:
-        for name, (owner, method) in _METHODS.items():
-            wrapped = _noting(getattr(owner, method), times[name])
-            stack.enter_context(mock.patch.object(owner, method, wrapped))
-        yield
+    @contextmanager
+    def watching(self) -> Iterator[None]:
+        """Let the methods note their times."""
+        with ExitStack() as stack:
+            for name in self._parts:
+                owner, method = _METHODS[name]
+                stack.enter_context(mock.patch.object(owner, method, self._noting(name, getattr(owner, method))))
+            yield
 
+    def _noting(self, name: str, function: Callable[..., Any]) -> Callable[..., Any]:
+        def noted(*arguments: Any, **options: Any) -> Any:
+            if name == _TICK:
+                self.ticks.append(dict.fromkeys(self._parts, 0.0))
+            elif not self._open or self._open[-1] == _WITHOUT_PARTS:
+                return function(*arguments, **options)
+            self._switch()
+            self._open.append(name)
+            try:
+                return function(*arguments, **options)
+            finally:
+                self._switch()
+                self._open.pop()
 
-def _noting(function: Callable[..., Any], times: list[float]) -> Callable[..., Any]:
-    def noted(*arguments: Any, **options: Any) -> Any:
-        started = time.thread_time()
-        result = function(*arguments, **options)
-        times.append(time.thread_time() - started)
-        return result
+        return noted
 
-    return noted
+    def _switch(self) -> None:
+        """Give the time since the last switch to the innermost part."""
+        now = time.thread_time()
+        if self._open:
+            self.ticks[-1][self._open[-1]] += now - self._last
+        self._last = now
 
 
 def _as_json(timing: Timing) -> dict[str, float]:
