@@ -94,9 +94,9 @@ def test_check_says_what_the_page_shows(folder):
     assert [re.sub(r"\(leaves: .*\)", "(leaves: ...)", line) for line in told] == PROBLEMS.splitlines()
 
 
-def test_the_command_line_knows_the_leaf_by_the_pages_option(folder):
-    done = lookstep(["--leaves", "my_leaves.py", "check", "a_few_steps.yaml"], folder)
-    assert (done.returncode, done.stdout) == (0, "a_few_steps.yaml: sound (tree)\n"), done.stderr
+def test_the_pages_commands_name_its_files():
+    own = re.findall(r"^\./run lookstep (--leaves \S+) (\w+) (?:--tree )?(\S+)", PAGE, re.MULTILINE)
+    assert own == [("--leaves my_leaves.py", command, "a_few_steps.yaml") for command in ("check", "tree", "run")]
 
 
 def test_the_leaves_of_an_installed_package_are_known_by_its_entry_point(folder):

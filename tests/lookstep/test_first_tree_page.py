@@ -37,8 +37,6 @@ def test_the_pages_commands_do_what_it_says(folder: Path, capsys: pytest.Capture
     assert "stopped: the tree has succeeded" in capsys.readouterr().out
     assert main(next(command for command in COMMANDS if command[0] == "why")) == 0
     assert "wait_for_swing" in capsys.readouterr().out
-    assert main(own["replay"]) == 0
-    assert "equal to the bit" in capsys.readouterr().out
 
 
 def test_the_pages_mistake_is_told_as_it_says(folder: Path, capsys: pytest.CaptureFixture[str]):
