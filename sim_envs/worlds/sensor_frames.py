@@ -51,9 +51,13 @@ class SensorFrames(Generic[Frame]):
         self._rendered: tuple[Snapshot, Frame] | None = None
         self._count = 0
 
+    def due(self, time: float) -> bool:
+        """Whether the next measurement is due at a robot time [s]."""
+        return time + _EARLY >= self._count / self._sensor.rate
+
     def advance(self, time: float, data: mujoco.MjData, T_estimate_world: Pose) -> None:
         """Note what the world looks like if the next measurement is due at this robot time [s]."""
-        if time + _EARLY < self._count / self._sensor.rate:
+        if not self.due(time):
             return
         T_world_body = Pose(data.xmat[self._body].reshape(3, 3), data.xpos[self._body])
         self._snapshot = Snapshot(

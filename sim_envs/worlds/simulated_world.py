@@ -203,6 +203,7 @@ class SimulatedWorld:
         self._asked_time += duration
         while self._body.next_time <= self._asked_time + _ROUNDING:
             self._control_step()
+        self._place_shapes()
 
     def push(self, force_world: Array) -> None:
         """Push the pelvis with a force (3,) [N] until told otherwise; zero ends it.
@@ -243,10 +244,11 @@ class SimulatedWorld:
             self.move_box(name, T_world_box)
         self._body.advance()
         self._true_state = None
-        self._place_shapes()
         self._drift.advance(self.time, self.time - before, self._pelvis)
         self._check_fall()
-        self._look()
+        if self._images.due(self.time) or self._scans.due(self.time):
+            self._place_shapes()
+            self._look()
 
     def _check_fall(self) -> None:
         if not self._walker.fallen and self._falls.due(self.time):
