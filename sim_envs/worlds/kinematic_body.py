@@ -72,6 +72,7 @@ class KinematicBody:
         self._v = np.zeros(model.pin_model.nv)
         self._weight = model.mass * _GRAVITY
         self._supports = walker.supports
+        self._gaps = dict.fromkeys(Side, 0.0)
         self._control_steps = 0
         self._place()
 
@@ -93,7 +94,6 @@ class KinematicBody:
         """One control step: measure, command, integrate."""
         self._control_steps += 1
         dt = 1.0 / self._parameters.control_rate
-        self._dynamics.update(self._q, self._v)
         command = self._walker.control(BodyMeasurement(self.time, self._q, self._v, self._loads()))
         v = self._v + command.acceleration * dt
         if self._walker.fallen:
@@ -114,16 +114,16 @@ class KinematicBody:
 
     def _touches_ground(self, side: Side) -> bool:
         """Whether a corner of the sole is nearer to the ground than it sinks in half a control step."""
-        body = self._dynamics
-        sole = body.sole(side)
-        gaps = (sole @ self._corners_sole)[:, 2]
-        gaps -= self._ground().ground_height((sole @ self._corners_sole)[:, :2])
-        sinking = -float(sole.R[2] @ body.sole_velocity(side)[:3])
-        return bool(np.min(gaps) <= max(0.0, 0.5 * sinking / self._parameters.control_rate))
+        corners = self._model.sole_pose(self._q, side) @ self._corners_sole
+        gap = float(np.min(corners[:, 2] - self._ground().ground_height(corners[:, :2])))
+        sinking = self._gaps[side] - gap
+        self._gaps[side] = gap
+        return gap <= max(0.0, 0.5 * sinking)
 
     def _without_impact(self, v: Array) -> Array:
         """The velocity after an impact that brings all feet on the ground to rest, (6 + n,)."""
         body = self._dynamics
+        body.update(self._q, v)
         J = np.vstack([body.sole_jacobians[side] for side in self._walker.supports])
         M_inverse_Jt = np.linalg.solve(body.mass_matrix, J.T)
         return v - M_inverse_Jt @ np.linalg.solve(J @ M_inverse_Jt, J @ v)
