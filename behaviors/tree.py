@@ -26,6 +26,7 @@ from behaviors.leaf import LeafNode
 from behaviors.node import Node
 from behaviors.robot import Robot
 from behaviors.robot_view import RobotView
+from behaviors.safe_stop import SafeStop
 from behaviors.spec import TreeSpec
 from behaviors.timetable import Timetable
 from behaviors.trace import Happened, ParameterChange, Trace
@@ -133,7 +134,7 @@ class Tree:
         self._nodes_by_path = {node.path: node for node in self.nodes}
         self._statuses = [node.status for node in self.nodes]
         self._is_set_up = False
-        self._is_stopped = False
+        self._stop = SafeStop(self.safe_stop, self.context)
         self._is_traced = False
 
     def reload(self, spec: TreeSpec) -> None:
@@ -242,7 +243,7 @@ class Tree:
         except Exception as error:
             self.context.record_fault(f"/{self.spec.name}", "tick", error)
         if self.outcome is Outcome.ERROR:
-            self._tick_safe_stop()
+            self._stop.tick()
         elif self.outcome is Outcome.RUNNING:
             self._conclude()
         self._find_transitions()
@@ -288,35 +289,10 @@ class Tree:
             self.outcome = Outcome.ERROR
             self.reason = str(self.context.faults[0])
             self.root.stop(Status.INVALID)
-            self._tick_safe_stop()
+            self._stop.tick()
         elif self.root.status is not Status.RUNNING:
             self.outcome = Outcome.SUCCESS if self.root.status is Status.SUCCESS else Outcome.FAILURE
             self.reason = self.root.reason
-
-    def _tick_safe_stop(self) -> None:
-        """Tick the safe stop until it is done; where there is none, or it raises itself, the robot pauses."""
-        if self._is_stopped:
-            return
-        stop, faults = self.safe_stop, len(self.context.faults)
-        if stop is None:
-            self._pause_walking()
-            return
-        try:
-            stop.tick_once()
-            self._is_stopped = stop.status is not Status.RUNNING
-        except NodeFaultError:
-            stop.stop(Status.INVALID)
-        if len(self.context.faults) > faults:
-            self._pause_walking()
-
-    def _pause_walking(self) -> None:
-        """What remains where nothing else says how to stop."""
-        self._is_stopped = True
-        self.context.robot.caller = "/safe_stop"
-        try:
-            self.context.robot.pause_walking()
-        except Exception as error:
-            self.context.record_fault("/safe_stop", "tick", error)
 
     def _find_transitions(self) -> None:
         transitions = []
