@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from behaviors.blackboard import type_name
+from behaviors.check_leaf import Check
 from behaviors.decorators import Decorator
 from behaviors.naming import snake_case
 from behaviors.spec import NodeSpec, TreeSpec, Wire
@@ -70,6 +71,9 @@ def _drawn_node(node: NodeSpec, branch: str, below: str, role: str = "") -> Iter
 
 
 def _details(node: NodeSpec) -> Iterator[str]:
+    if node.kind == Check.kind:
+        yield node.parameters.that
+        return
     if node.given:
         units = {field.name: field.metadata["unit"] for field in fields(node.parameters)}
         yield ", ".join(_setting(key, getattr(node.parameters, key), units[key]) for key in node.given)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from behaviors.composites import COMPOSITES
 from behaviors.kinds import DECORATORS
+from behaviors.naming import snake_case
 from strict_yaml import Scalar
 
 
@@ -131,5 +132,6 @@ def tree_id(name: str) -> str:
 
 
 def tree_name(identity: str) -> str:
-    """The other way."""
-    return identity.replace("--", "/")
+    """The other way; an ID of another's making becomes a name of ours: `MainTree` is `main_tree`."""
+    name = identity.replace("--", "/")
+    return name if re.fullmatch(r"[a-z0-9_/]*", name) else snake_case(name).replace("-", "_")

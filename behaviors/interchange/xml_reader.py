@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 from behaviors.composites import COMPOSITES
 from behaviors.decorators import Decorator
-from behaviors.definition import KEY, TREE_NAME
+from behaviors.definition import KEY, MAXIMUM_INCLUDE_DEPTH, TREE_NAME
 from behaviors.interchange.read_tree import SPELLED_OUT
 from behaviors.interchange.written import WrittenFile, WrittenNode, WrittenPort, WrittenTree
 from behaviors.interchange.xml_elements import Element, parse_elements
@@ -32,7 +33,7 @@ def read_xml(text: str, registry: Registry, file: str = "<text>") -> WrittenFile
     """
     root = parse_elements(text, file)
     problems: list[Problem] = []
-    written = _Reader(registry, problems).file(root)
+    written = _Reader(registry, problems).file(root, Path(file))
     if problems or written is None:
         raise YamlError(problems)
     return written
@@ -44,18 +45,15 @@ class _Reader:
         self.problems = problems
         self.models: dict[str, Element] = {}
 
-    def file(self, root: Element) -> WrittenFile | None:
-        """The whole file."""
+    def file(self, root: Element, path: Path) -> WrittenFile | None:
+        """The whole file, with the trees of those that it includes."""
         if root.tag != "root":
             self._add(root, f'got <{root.tag}>, needs <root BTCPP_format="4">')
             return None
         if root.attributes.get("BTCPP_format", "4") != "4":
             self._add(root, f"got BTCPP_format {root.attributes['BTCPP_format']}, reads 4")
-        for include in root.all("include"):
-            self._add(include, "<include> is not followed; put the trees into one file")
-        for model in root.all("TreeNodesModel"):
-            self.models.update({entry.attributes.get("ID", ""): entry for entry in model.all("SubTree")})
-        elements = {element.attributes.get("ID", ""): element for element in root.all("BehaviorTree")}
+        elements: dict[str, Element] = {}
+        self._gather(root, (path.resolve(),), elements)
         main = root.attributes.get("main_tree_to_execute", next(iter(elements), ""))
         if main not in elements:
             self._add(root, f'no <BehaviorTree ID="{main}">{nearest(main, elements)}')
@@ -74,6 +72,31 @@ class _Reader:
         include = tuple(self._metadata(main).get("include", "").split())
         return WrittenFile(tree, include, safe_stop, others)
 
+    def _gather(self, root: Element, including: tuple[Path, ...], elements: dict[str, Element]) -> None:
+        """The trees and models of a file, then those of the files that it includes."""
+        for model in root.all("TreeNodesModel"):
+            self.models.update({entry.attributes.get("ID", ""): entry for entry in model.all("SubTree")})
+        names = {tree_name(identity): identity for identity in elements}
+        for element in root.all("BehaviorTree"):
+            identity = element.attributes.get("ID", "")
+            known = names.setdefault(tree_name(identity), identity)
+            if identity in elements or known != identity:
+                self._add(element, f'there are two trees "{tree_name(identity)}" ({known}, {identity})')
+            elements[identity] = element
+        for include in root.all("include"):
+            path = (including[-1].parent / include.attributes.get("path", "")).resolve()
+            if path in including or len(including) >= MAXIMUM_INCLUDE_DEPTH:
+                self._add(include, "files include one another, or too deep")
+                continue
+            try:
+                inner = parse_elements(path.read_text(encoding="utf-8"), str(path))
+            except (OSError, UnicodeDecodeError) as error:
+                self._add(include, f"cannot include {path.name}: {error}")
+            except YamlError as error:
+                self.problems.extend(error.problems)
+            else:
+                self._gather(inner, (*including, path), elements)
+
     def _metadata(self, identity: str) -> dict[str, str]:
         found: dict[str, str] = {}
         model = self.models.get(identity)
@@ -82,13 +105,14 @@ class _Reader:
                 found.update(entry.attributes)
         return found
 
-    def _tree(self, name: str, element: Element) -> WrittenTree | None:
+    def _tree(self, identity: str, element: Element) -> WrittenTree | None:
+        name = tree_name(identity)
         if not TREE_NAME.fullmatch(name):
-            self._add(element, f'got ID "{name}"; a tree is named in small letters, digits and "_"')
+            self._add(element, f'got ID "{identity}"; a tree is named in letters, digits and "_"')
         root = self._only_child(element)
-        model = self.models.get(name)
+        model = self.models.get(identity)
         ports = self._ports(model, "input_port"), self._ports(model, "output_port")
-        return None if root is None else WrittenTree(name, root, self._metadata(name).get("about", ""), *ports)
+        return None if root is None else WrittenTree(name, root, self._metadata(identity).get("about", ""), *ports)
 
     def _ports(self, model: Element | None, tag: str) -> tuple[WrittenPort, ...]:
         return tuple(map(self._port, [] if model is None else model.all(tag)))

@@ -12,7 +12,7 @@ import pytest
 from scripted import make, run, toys
 from test_halts import random_node
 
-from behaviors import Registry, Trace, known_leaves
+from behaviors import Registry, Trace, known_leaves, parse_tree
 from behaviors.interchange import read_written, read_xml, write_groot_log, write_palette, write_xml, write_yaml
 from behaviors.interchange.comments import _comments
 from behaviors.recorded_trace import RecordedTrace
@@ -157,6 +157,43 @@ def test_xml_of_common_nodes_alone_is_read(name: str):
         assert written.tree.root.children[1].settings == (("that", "x > 1 and not y"),)
 
 
+def test_xml_of_others_becomes_a_sound_tree_with_names_of_ours(tmp_path: Path):
+    (tmp_path / "parts").mkdir()
+    (tmp_path / "parts" / "rest.xml").write_text(
+        '<root BTCPP_format="4"><BehaviorTree ID="SleepAWhile"><Sequence name="SleepSequence"><Sleep msec="300"/>'
+        "<AlwaysSuccess/></Sequence></BehaviorTree></root>"
+    )
+    main = tmp_path / "main.xml"
+    main.write_text(
+        """<?xml version="1.0"?>
+<root BTCPP_format="4" main_tree_to_execute = "Main">
+  <include path="parts/rest.xml"/>
+  <BehaviorTree ID="Main">
+    <Sequence>
+      <SubTree ID="SleepAWhile" name="FirstSubtree"/>
+      <SubTree ID="SleepAWhile" name="SecondSubtree"/>
+    </Sequence>
+  </BehaviorTree>
+  <!-- Models as Groot writes them. -->
+  <TreeNodesModel><Action ID="Sleep" editable="true"><input_port name="msec"/></Action></TreeNodesModel>
+</root>
+"""
+    )
+    yaml = write_yaml(read_xml(main.read_text(), shipped_leaves(), str(main)))
+    spec = parse_tree(yaml, shipped_leaves())
+    assert [node.path for node in spec][:4] == [
+        "/main",
+        "/main/firstsubtree",
+        "/main/firstsubtree/wait",
+        "/main/firstsubtree/succeed",
+    ]
+    assert next(node.parameters.duration for node in spec if node.kind == "Wait") == 0.3
+    (tmp_path / "parts" / "rest.xml").write_text('<root><include path="../main.xml"/></root>')
+    with pytest.raises(YamlError, match="files include one another") as error:
+        read_xml(main.read_text(), shipped_leaves(), str(main))
+    assert error.value.problems[0].location.file.endswith("rest.xml")
+
+
 FOREIGN = {
     "<SaySomething message='hello'/>": ["1:55: node <SaySomething> is not supported"],
     "<Sequence><OpenDoor/><CloseDoor/></Sequence>": [
@@ -198,7 +235,15 @@ def test_xml_that_says_more_is_refused_with_every_place(body: str):
         ('<root BTCPP_format="3"><BehaviorTree ID="a"><AlwaysSuccess/></BehaviorTree></root>', "reads 4"),
         ('<!DOCTYPE x [<!ENTITY a "b">]><root/>', "a document type is not allowed"),
         ("<root>" * 200, "deeper than 100"),
-        ('<root><include path="a.xml"/><BehaviorTree ID="a"><AlwaysSuccess/></BehaviorTree></root>', "not followed"),
+        (
+            '<root><include path="a.xml"/><BehaviorTree ID="a"><AlwaysSuccess/></BehaviorTree></root>',
+            "cannot include a.xml",
+        ),
+        (
+            '<root><BehaviorTree ID="AB"><AlwaysSuccess/></BehaviorTree><BehaviorTree ID="ab"><AlwaysSuccess/>'
+            "</BehaviorTree></root>",
+            'there are two trees "ab"',
+        ),
     ],
 )
 def test_what_is_no_tree_in_xml_is_refused(text: str, message: str):
