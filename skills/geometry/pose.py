@@ -132,6 +132,15 @@ class Pose:
 IDENTITY = Pose.identity()
 
 
+def rotation_about(vector: ArrayLike) -> Array:
+    """Rotation about a vector by its length [rad] (Rodrigues, 1840)."""
+    x, y, z = np.asarray(vector, dtype=np.float64)
+    angle = float(np.sqrt(x * x + y * y + z * z))
+    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    # sin(a) / a and (1 - cos(a)) / a^2, which numpy's sinc knows at 0 too.
+    return np.eye(3) + np.sinc(angle / np.pi) * K + 0.5 * np.sinc(0.5 * angle / np.pi) ** 2 * (K @ K)
+
+
 def rotation_x(angle: float) -> Array:
     """Rotation about x by an angle [rad]."""
     c, s = np.cos(angle), np.sin(angle)

@@ -12,11 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from skills.geometry.pose import Array, readonly
-
-# How large drift [m/s], mount error [rad] and scale error are expected to be, and how exact a frame is [m].
-_EXPECTED = np.repeat((0.01, 0.035, 0.01), (3, 3, 1))
-_EXACT = np.array((1e-3, 1e-3, 2e-4))
-_PRIOR = np.diag(_EXPECTED**-2.0)
+from skills.regions.camera_error import CameraError
+from skills.regions.registration_parameters import RegistrationParameters
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,21 +38,46 @@ class ApparentMotion:
         """Nothing has been seen yet."""
         return cls(np.zeros((7, 7)), np.zeros(7), np.zeros(7))
 
-    def learned(self, causes: Array, shift_world: Array, trust: float, kept: float) -> ApparentMotion:
-        """After one more frame: what was known counts only for a share `kept`, the frame for a share `trust`."""
-        weighted = trust * causes.T / _EXACT**2
+    @property
+    def camera(self) -> CameraError:
+        """The camera's part of it."""
+        return CameraError(self.estimate[3:6], float(self.estimate[6]))
+
+    def doubt(self, parameters: RegistrationParameters) -> Array:
+        """Standard deviations of what is told of the camera, (4,) [rad, rad, rad, 1]."""
+        return np.sqrt(np.diag(np.linalg.inv(self.information + _prior(parameters)))[3:])
+
+    def learned(
+        self, causes: Array, shift_world: Array, trust: float, kept: float, parameters: RegistrationParameters
+    ) -> ApparentMotion:
+        """After one more frame.
+
+        Args:
+            causes: see `causes_of`.
+            shift_world: of the frame, (3,) [m].
+            trust: share for which the frame counts.
+            kept: share for which what was known before counts.
+            parameters: what is expected, and how exact a frame is.
+        """
+        exact = np.array((parameters.exact_level, parameters.exact_level, parameters.exact_height))
+        weighted = trust * causes.T / exact**2
         information = kept * self.information + weighted @ causes
         vector = kept * self.vector + weighted @ shift_world
-        return ApparentMotion(
-            information, vector, np.asarray(np.linalg.solve(information + _PRIOR, vector), np.float64)
-        )
+        estimate = np.linalg.solve(information + _prior(parameters), vector)
+        return ApparentMotion(information, vector, np.asarray(estimate, np.float64))
 
-    def of_camera(self, causes: Array, angle_min: float, scale_min: float) -> Array:
-        """The shift that the camera is to blame for, (3,) [m]; none while its errors are too small to be sure of."""
-        mount, scale = self.estimate[3:6], self.estimate[6]
-        if np.linalg.norm(mount) < angle_min and abs(scale) < scale_min:
-            return np.zeros(3)
-        return causes[:, 3:] @ self.estimate[3:]
+
+def _prior(parameters: RegistrationParameters) -> Array:
+    """Information that all are about as small as is expected, (7, 7)."""
+    expected = (parameters.expected_drift, parameters.expected_mount, parameters.expected_scale)
+    return np.diag(np.repeat(expected, (3, 3, 1)) ** -2.0)
+
+
+def shift_by(error: CameraError, causes: Array, parameters: RegistrationParameters) -> Array:
+    """The shift of a frame that its camera is to blame for, (3,) [m]; none where the error is too small to be sure."""
+    if np.linalg.norm(error.mount_camera) < parameters.mount_min and abs(error.scale) < parameters.scale_min:
+        return np.zeros(3)
+    return causes[:, 3:] @ error.vector
 
 
 def causes_of(dt: float, moved_world: Array, R_world_camera: Array) -> Array:

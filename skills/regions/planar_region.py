@@ -40,6 +40,19 @@ class PlanarRegion:
         """The same region seen from another frame."""
         return replace(self, T_world_region=T @ self.T_world_region)
 
+    def scaled(self, factor: float, about: Array) -> PlanarRegion:
+        """The region drawn near to a point, (3,) in its frame of reference, or away from it."""
+        T = self.T_world_region
+        return replace(
+            self,
+            T_world_region=Pose(T.R, about + factor * (T.p - about)),
+            hull_region=factor * self.hull_region,
+            holes_region=tuple(factor * hole for hole in self.holes_region),
+            convex_parts_region=tuple(factor * part for part in self.convex_parts_region),
+            area=factor**2 * self.area,
+            sigma=factor * self.sigma,
+        )
+
     @property
     def normal_world(self) -> Array:
         """Unit upward normal, (3,)."""

@@ -19,12 +19,13 @@ import numpy as np
 from skills.footsteps.footstep import Side, Stance
 from skills.geometry.camera import DepthImage
 from skills.geometry.pose import IDENTITY, Pose
+from skills.regions.camera_error import NO_ERROR, CameraError
 from skills.regions.forgetting import REASONS, judge_regions
 from skills.regions.height_reference import HeightReference, updated
 from skills.regions.memory_parameters import MemoryParameters
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 from skills.regions.region_cells import Cells, Window, cells_of, hold
-from skills.regions.registration import Drift, register
+from skills.regions.registration import Drift, camera_to_correct, register
 from skills.regions.registration_parameters import RegistrationParameters
 
 
@@ -84,6 +85,7 @@ class RegionMemory:
     T_world_key: Pose | None = None
     start: Stance | None = None
     reference: HeightReference | None = None
+    camera_error: CameraError = NO_ERROR
 
 
 class Sole(Protocol):
@@ -133,15 +135,33 @@ def remember(
         image: the frame; it tells where the camera is, and through which old regions it sees.
         parameters: numbers.
     """
+    if memory.camera_error is not NO_ERROR:
+        regions = memory.camera_error.regions_corrected(regions, image.T_world_camera)
+        image = memory.camera_error.image_corrected(image)
     if memory.T_world_map is not IDENTITY:
         T_map_world = memory.T_world_map.inverse
         regions, stance, image = regions.moved(T_map_world), stance.moved(T_map_world), image.moved(T_map_world)
     before = None if memory.update is None else memory.update.drift
-    drift = register(regions, image, memory.reference, before, parameters.registration)
+    drift = register(regions, image, memory.reference, before, memory.camera_error, parameters.registration)
     T = drift.T_world_frame
     if T is not IDENTITY:
         regions, stance, image = regions.moved(T), stance.moved(T), image.moved(T)
-    return _slid(_Frame(memory, regions, stance, image, parameters).joined(drift), drift)
+    joined = _slid(_Frame(memory, regions, stance, image, parameters).joined(drift), drift)
+    error = camera_to_correct(drift, parameters.registration)
+    return joined if error is None else _put_right(joined, image.T_world_camera, error, parameters)
+
+
+def _put_right(memory: RegionMemory, T_map_camera: Pose, error: CameraError, parameters: MapParameters) -> RegionMemory:
+    """The map as it would be had the camera's error been made good all along; the ground follows with the next frame.
+
+    Frames have been brought onto the newest, so what is wrong with all of them is what is wrong with its camera.
+    """
+    left, cell = error.less(memory.camera_error), parameters.registration.cell
+    regions = tuple(left.region_corrected(remembered.region, T_map_camera) for remembered in memory.kept)
+    cells = cells_of(regions, cell)
+    kept = tuple(Remembered(region, cells.of(k)) for k, region in enumerate(regions))
+    reference = updated(None, cells, T_map_camera.p, parameters.registration)
+    return replace(memory, kept=kept, reference=reference, camera_error=error)
 
 
 def _slid(memory: RegionMemory, drift: Drift) -> RegionMemory:

@@ -18,7 +18,8 @@ import numpy as np
 from skills.geometry.camera import DepthImage
 from skills.geometry.pose import IDENTITY, Array, Pose, readonly, rotation_z
 from skills.kernels import kernel
-from skills.regions.apparent_motion import ApparentMotion, causes_of
+from skills.regions.apparent_motion import ApparentMotion, causes_of, shift_by
+from skills.regions.camera_error import CameraError
 from skills.regions.height_reference import HeightReference
 from skills.regions.planar_region import PlanarRegions
 from skills.regions.region_cells import T_RASTER_WORLD, Raster, Window, cells_of
@@ -46,6 +47,7 @@ class Drift:
         shift_turn: the same as a shift of the ground in view and a turn about its middle, (4,) [m, m, m, rad].
         apparent_world: the part of the shift that the camera is to blame for, (3,) [m].
         motion: what is known of drift and camera.
+        corrected: what of the camera's error has been made good in the frame.
         turn_rate: steady part of the turn [rad/s].
         time: robot time of the frame [s].
         camera_odometry: where the robot estimated the camera, (3,) [m].
@@ -57,6 +59,7 @@ class Drift:
     shift_turn: Array
     apparent_world: Array
     motion: ApparentMotion
+    corrected: CameraError
     turn_rate: float
     time: float
     camera_odometry: Array
@@ -73,6 +76,7 @@ def register(
     image: DepthImage,
     reference: HeightReference | None,
     before: Drift | None,
+    corrected: CameraError,
     parameters: RegistrationParameters,
 ) -> Drift:
     """Find how far the estimate has drifted between the reference and a frame.
@@ -82,16 +86,20 @@ def register(
         image: the frame; it tells where the camera was believed to be.
         reference: the ground known before; None where there is none.
         before: the drift of the frame before.
+        corrected: what has been made good in the frame.
         parameters: how far to trust the frame.
     """
     camera = image.T_world_odometry.inverse @ image.T_world_camera.p
     if reference is None or before is None:
         unknown, still = ApparentMotion.unknown(), np.zeros(4)
-        return Drift(IDENTITY, still, np.zeros(3), unknown, 0.0, image.time, camera, 0.0, "no ground is known yet")
+        reason = "no ground is known yet"
+        return Drift(IDENTITY, still, np.zeros(3), unknown, corrected, 0.0, image.time, camera, 0.0, reason)
     dt = image.time - before.time
     moved = image.T_world_odometry.R @ (camera - before.camera_odometry)
     causes = causes_of(dt, moved, image.T_world_camera.R)
-    predicted = np.append(T_RASTER_WORLD.R @ causes @ before.motion.estimate, before.turn_rate * dt)
+    made_good = causes[:, 3:] @ corrected.vector
+    expected = causes @ before.motion.estimate - made_good
+    predicted = np.append(T_RASTER_WORLD.R @ expected, before.turn_rate * dt)
     window = _window_of(regions, image, parameters)
     newest, known = window.paint(cells_of(regions.regions, parameters.cell)), reference.cut(window)
     found, overlap, reason = _fit(newest, known, window, predicted, parameters)
@@ -99,10 +107,11 @@ def register(
     surprise = found - predicted
     steady = not reason and bool(np.abs(surprise).max() < _STEADY)
     turn_rate = kept * before.turn_rate + parameters.rate_gain * steady * float(surprise[3]) / max(dt, _SHORTEST)
-    motion = before.motion.learned(causes, T_RASTER_WORLD.R.T @ found[:3], float(steady), kept)
-    apparent = motion.of_camera(causes, parameters.mount_min, parameters.scale_min)
+    seen = T_RASTER_WORLD.R.T @ found[:3] + made_good
+    motion = before.motion.learned(causes, seen, float(steady), kept, parameters)
+    apparent = shift_by(motion.camera.less(corrected), causes, parameters)
     T_world_frame = _as_pose(found, window)
-    return Drift(T_world_frame, found, apparent, motion, turn_rate, image.time, camera, overlap, reason)
+    return Drift(T_world_frame, found, apparent, motion, corrected, turn_rate, image.time, camera, overlap, reason)
 
 
 def _window_of(regions: PlanarRegions, image: DepthImage, parameters: RegistrationParameters) -> Window:
@@ -167,6 +176,18 @@ def _as_pose(shift_turn: Array, window: Window) -> Pose:
     R, middle = rotation_z(shift_turn[3]), window.middle
     T_raster = Pose(R, middle - R @ middle + shift_turn[:3])
     return T_RASTER_WORLD.inverse @ T_raster @ T_RASTER_WORLD
+
+
+def camera_to_correct(drift: Drift, parameters: RegistrationParameters) -> CameraError | None:
+    """What is wrong with the camera, as far as it is known well enough; None where all of it has been made good."""
+    smallest = np.repeat((parameters.mount_min, parameters.scale_min), (3, 1))
+    known = drift.motion.doubt(parameters) <= parameters.camera_doubt * smallest
+    sure = np.repeat((known[:3].all(), known[3]), (3, 1))
+    error, before = drift.motion.camera.vector, drift.corrected.vector
+    if not parameters.correct_camera or not (sure & (np.abs(error - before) > smallest)).any():
+        return None
+    error = np.where(sure, error, before)
+    return CameraError(error[:3], float(error[3]))
 
 
 @kernel

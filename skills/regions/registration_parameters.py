@@ -54,3 +54,22 @@ class RegistrationParameters:
     frames_max: int = parameter(
         8, unit="1", minimum=1, maximum=100, meaning="frames that a cell's height is the mean of"
     )
+    correct_camera: bool = parameter(
+        True, unit="1", meaning="what is found wrong with the camera's mount and scale is made good"
+    )
+    camera_doubt: float = parameter(
+        1.0, unit="1", minimum=0.01, maximum=10.0, meaning="standard deviations of it, in mount_min and scale_min"
+    )
+    expected_drift: float = parameter(
+        0.01, unit="m/s", minimum=1e-4, maximum=1.0, meaning="how fast estimates drift, as a rule"
+    )
+    expected_mount: float = parameter(
+        0.035, unit="rad", minimum=1e-4, maximum=1.0, meaning="how far askew cameras are mounted, as a rule"
+    )
+    expected_scale: float = parameter(
+        0.01, unit="1", minimum=1e-5, maximum=1.0, meaning="how wrong the scale of depth is, as a rule"
+    )
+    exact_level: float = parameter(
+        1e-3, unit="m", minimum=1e-5, maximum=0.1, meaning="standard deviation of the shift of a frame along the ground"
+    )
+    exact_height: float = parameter(2e-4, unit="m", minimum=1e-5, maximum=0.1, meaning="the same for its height")

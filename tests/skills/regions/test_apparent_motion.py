@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 
 from skills.geometry.pose import Pose, rotation_z
-from skills.regions.apparent_motion import ApparentMotion, causes_of
+from skills.regions import RegistrationParameters
+from skills.regions.apparent_motion import ApparentMotion, causes_of, shift_by
+
+PARAMETERS = RegistrationParameters()
 
 
 def walked(drift: np.ndarray, mount: np.ndarray, scale: float, frames: int = 400) -> ApparentMotion:
@@ -23,7 +26,7 @@ def walked(drift: np.ndarray, mount: np.ndarray, scale: float, frames: int = 400
         # What a camera that believes in a wrong pose sees of a point that stands still.
         turned = R_world_camera @ np.cross(mount, R_world_camera.T @ (way[k + 1] - way[k]))
         shift = 0.1 * drift + turned + scale * (way[k + 1] - way[k]) + rng.normal(0.0, (1e-3, 1e-3, 2e-4))
-        motion = motion.learned(causes, shift, 1.0, 1.0)
+        motion = motion.learned(causes, shift, 1.0, 1.0, PARAMETERS)
     return motion
 
 
@@ -46,10 +49,10 @@ def test_a_walk_that_sways_tells_them_apart(drift, mount, scale):
 def test_a_camera_that_is_as_believed_is_blamed_for_nothing():
     motion = walked(np.array((0.006, -0.006, 0.006)), np.zeros(3), 0.0)
     causes = causes_of(0.1, np.array((0.02, 0.0, 0.0)), np.eye(3))
-    np.testing.assert_array_equal(motion.of_camera(causes, np.deg2rad(0.3), 0.003), 0.0)
+    np.testing.assert_array_equal(shift_by(motion.camera, causes, PARAMETERS), 0.0)
 
 
 def test_a_frame_that_is_not_trusted_teaches_nothing():
     causes = causes_of(0.1, np.array((0.02, 0.0, 0.0)), np.eye(3))
-    motion = ApparentMotion.unknown().learned(causes, np.ones(3), 0.0, 1.0)
+    motion = ApparentMotion.unknown().learned(causes, np.ones(3), 0.0, 1.0, PARAMETERS)
     np.testing.assert_array_equal(motion.estimate, 0.0)
