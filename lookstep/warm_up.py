@@ -10,10 +10,12 @@ from __future__ import annotations
 import dataclasses
 import gc
 import os
+import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 import numpy as np
 
@@ -27,6 +29,10 @@ from skills.height_map import HeightMapper
 from skills.kernels import kernel_cache
 from skills.regions import MapParameters, PlanarRegion, PlanarRegions, RegionMemory, examine_regions, remember
 from skills.regions.extraction import polygons_of
+from skills.regions.growing import grow_regions
+from skills.regions.own_body import without_body
+from skills.regions.patches import fit_patches
+from skills.regions.refinement import refine_regions
 
 _COMPILED = "compiled"  # empty file in the cache of kernels: all of them are in there
 
@@ -35,15 +41,17 @@ def warm_up(configuration: Configuration) -> None:
     """Run each kernel once with the types that a walk uses."""
     course = load_course("flat")
     world = build_world(course, configuration, "kinematic")
+    parameters = MapParameters.of(configuration.region_memory, configuration.registration, configuration.footsteps)
     with _second_process():
         image, scan, stance = world.depth_image(), world.lidar_scan(), world.status().imminent_stance
         assert image is not None and scan is not None, "the world takes its first frames when it is made"
         HeightMapper(configuration.height_map).update(scan, stance.mid_feet)
-        regions = examine_regions(image, configuration.regions).regions
-        parameters = MapParameters.of(configuration.region_memory, configuration.registration, configuration.footsteps)
-        memory = RegionMemory()
-        for _ in range(2):  # The second look is registered against the first.
-            memory = remember(memory, regions, stance, image, parameters)
+        patches = fit_patches(without_body(image), configuration.regions)
+        coarse = grow_regions(patches, configuration.regions, configuration.regions.patches_min)
+        refine_regions(image, patches, coarse, configuration.regions)
+        memory = remember(RegionMemory(), PlanarRegions((_slab(4.0, 4.0),), 0.0, 0), stance, image, parameters)
+    # The second look is registered against the first.
+    memory = remember(memory, examine_regions(image, configuration.regions).regions, stance, image, parameters)
     assert memory.ground is not None, "it has just been looked at"
     warm_up_planner(configuration)
     goal = sub_goal(straight_path(np.array(course.start), np.array(course.goal)), stance, configuration.sub_goal)
@@ -62,12 +70,31 @@ def _second_process() -> Iterator[None]:
         return
     # What a compiler makes is kept; looking again and again for what of it is garbage takes a tenth of the time.
     gc.disable()
+    # Two processes must not write one cache at a time: each names what it writes without asking the other.
+    beside = kernel_cache() / "beside"
     try:
+        environment = {**os.environ, "NUMBA_CACHE_DIR": str(beside)}
         # Where the other fails, its kernels are compiled here.
-        with subprocess.Popen((sys.executable, "-m", __name__), stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
+        command = (sys.executable, "-m", __name__)
+        with subprocess.Popen(command, env=environment, stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL):
             yield
+        take_over(beside)
     finally:
         gc.enable()
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+def take_over(beside: Path) -> None:
+    """Move the kernels of another cache into ours, but for those that are there: an index and its data at a time."""
+    for index in sorted(beside.rglob("*.nbi")):
+        target = kernel_cache() / index.parent.relative_to(beside)
+        target.mkdir(parents=True, exist_ok=True)
+        if (target / index.name).exists():
+            continue
+        for data in index.parent.iterdir():
+            if data.suffix == ".nbc" and data.name.startswith(index.stem + "."):
+                data.replace(target / data.name)
+        index.replace(target / index.name)
 
 
 def warm_up_beside(configuration: Configuration) -> None:

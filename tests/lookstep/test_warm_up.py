@@ -6,7 +6,7 @@ import sys
 from numba.core.dispatcher import Dispatcher
 
 from lookstep.configuration import load_configuration
-from lookstep.warm_up import warm_up, warm_up_beside
+from lookstep.warm_up import take_over, warm_up, warm_up_beside
 from skills.kernels import kernel_cache
 
 
@@ -33,3 +33,19 @@ def test_what_is_compiled_is_known_and_the_collector_runs_again():
     warm_up(load_configuration())
     assert (kernel_cache() / "compiled").exists()
     assert gc.isenabled()
+
+
+def test_a_cache_takes_over_what_it_has_not_itself(tmp_path, monkeypatch):
+    cache, beside = tmp_path / "cache", tmp_path / "cache" / "beside"
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache))
+    for folder, files in (
+        (cache / "a", ("f.nbi", "f.1.nbc")),
+        (beside / "a", ("f.nbi", "f.1.nbc", "g.nbi", "g.1.nbc")),
+    ):
+        folder.mkdir(parents=True)
+        for name in files:
+            (folder / name).write_text(str(folder))
+    take_over(beside)
+    texts = {file.name: file.read_text() for file in (cache / "a").iterdir()}
+    mine, others = str(cache / "a"), str(beside / "a")
+    assert texts == {"f.nbi": mine, "f.1.nbc": mine, "g.nbi": others, "g.1.nbc": others}
