@@ -1,7 +1,7 @@
-"""Every parameter of a run, gathered from the classes, the config files, a preset and the command line.
+"""Every parameter of a run, gathered from the classes, the config files, the robot, a preset and the command line.
 
-Precedence, weakest first: default of the class < `config/<subject>.yaml` < preset < `--set subject.key=value`. Tree
-nodes and `--set /node/path.key=value` override parameters of single leaves; the tree loader applies those.
+Precedence, weakest first: default of the class < `config/<subject>.yaml` < `config/robots/<robot>.yaml` < preset <
+`--set subject.key=value`. Tree nodes and `--set /node/path.key=value` override parameters of single leaves; the tree loader applies those.
 """
 
 from __future__ import annotations
@@ -12,8 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_type_hints
 
+from lookstep.options import DEFAULT_ROBOT
 from sim_envs.judge import JudgeParameters
-from sim_envs.robot import RobotDescription
+from sim_envs.robot import SHIPPED_ROBOTS, RobotDescription
 from sim_envs.sensors import DepthCameraParameters, DepthNoise, LidarNoise, LidarParameters
 from sim_envs.worlds import (
     FallParameters,
@@ -114,14 +115,21 @@ class Assignments:
 SUBJECTS: Mapping[str, type] = get_type_hints(Configuration)
 
 
-def load_configuration(preset: str | None = None, assignments: Iterable[str] = ()) -> Configuration:
-    """Read the shipped config, a preset (a shipped name or a file) and `subject.key=value` assignments.
+def load_configuration(
+    preset: str | None = None, assignments: Iterable[str] = (), robot: str = DEFAULT_ROBOT
+) -> Configuration:
+    """Read the shipped config, a robot and a preset (shipped names or files) and `subject.key=value` assignments.
 
     Raises:
         YamlError: with every problem found, each at its place; an assignment's place is `--set`.
     """
     problems: list[Problem] = []
-    layers = [_config_files(), _preset(preset, problems), _assignments(assignments, problems)]
+    layers = [
+        _config_files(),
+        _robot(robot, problems),
+        {} if preset is None else _named_layer("preset", preset, problems)[1],
+        _assignments(assignments, problems),
+    ]
     instances = {}
     for subject, cls in SUBJECTS.items():
         merged = _merge([layer[subject] for layer in layers if subject in layer], subject)
@@ -170,7 +178,20 @@ def split_assignments(assignments: Iterable[str]) -> Assignments:
 
 def preset_names() -> tuple[str, ...]:
     """The shipped presets."""
-    return tuple(sorted(path.stem for path in (shipped_folder("config") / "presets").glob("*.yaml")))
+    return _names("preset")
+
+
+def robot_names() -> tuple[str, ...]:
+    """The shipped robots."""
+    return _names("robot")
+
+
+def _names(kind: str) -> tuple[str, ...]:
+    return tuple(sorted(path.stem for path in _folder(kind).glob("*.yaml")))
+
+
+def _folder(kind: str) -> Path:
+    return shipped_folder("config") / f"{kind}s"
 
 
 def _config_files() -> dict[str, Node]:
@@ -178,14 +199,30 @@ def _config_files() -> dict[str, Node]:
     return {subject: load_document(folder / f"{subject}.yaml") for subject in SUBJECTS}
 
 
-def _preset(preset: str | None, problems: list[Problem]) -> dict[str, Node]:
-    if preset is None:
-        return {}
-    names = preset_names()
-    path = shipped_folder("config") / "presets" / f"{preset}.yaml" if preset in names else Path(preset)
-    if preset not in names and path.suffix != ".yaml":
-        place = Location("--preset", 0, 0)
-        message = f'unknown preset "{preset}"{nearest(preset, names)} (presets: {", ".join(names)}, or a .yaml file)'
+def _robot(robot: str, problems: list[Problem]) -> dict[str, Node]:
+    """The layer of a robot, its MJCF file beside the YAML file where it is not a shipped one."""
+    path, layer = _named_layer("robot", robot, problems)
+    table = layer.get("robot")
+    mjcf = None if table is None else table.get("mjcf")
+    if table is None or mjcf is None or not isinstance(mjcf.value, str):
+        return layer
+    beside = path.parent / mjcf.value
+    if beside.is_file():
+        there = Entry("mjcf", mjcf.location, dataclasses.replace(mjcf, value=str(beside.resolve())))
+        layer["robot"] = _merge([table, _mapping(table.location, (there,))], "robot")
+    elif not (SHIPPED_ROBOTS / mjcf.value).is_file():
+        message = f"there is no MJCF file {mjcf.value!r}, neither beside this file nor in {SHIPPED_ROBOTS}"
+        problems.append(Problem(mjcf.location, message, "robot.mjcf"))
+    return layer
+
+
+def _named_layer(kind: str, name: str, problems: list[Problem]) -> tuple[Path, dict[str, Node]]:
+    """The file of a preset or robot, and what it says of each subject."""
+    names = _names(kind)
+    path = _folder(kind) / f"{name}.yaml" if name in names else Path(name)
+    if name not in names and path.suffix != ".yaml":
+        place = Location(f"--{kind}", 0, 0)
+        message = f'unknown {kind} "{name}"{nearest(name, names)} ({kind}s: {", ".join(names)}, or a .yaml file)'
         raise YamlError([Problem(place, message)])
     layer = {}
     for subject, location, node in load_document(path).entries:
@@ -193,7 +230,7 @@ def _preset(preset: str | None, problems: list[Problem]) -> dict[str, Node]:
             layer[subject] = node
         else:
             problems.append(_unknown_subject(subject, location))
-    return layer
+    return path, layer
 
 
 def _assignments(assignments: Iterable[str], problems: list[Problem]) -> dict[str, Node]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+DEFAULT_ROBOT = "atlas_class"
 WORLDS = ("physics", "kinematic")
 EXECUTORS = ("lockstep", "realtime")
 
@@ -22,6 +23,7 @@ class RunOptions:
         speed: robot time per wall time; as fast as possible where None, which realtime does not allow.
         goal: x [m], y [m], yaw [rad]; the course's own where None.
         time_limit: robot time after which the run ends [s].
+        robot: name of a shipped robot, or a YAML file.
         preset: name of a shipped preset, or a YAML file.
         assignments: `subject.key=value`, `course.option=value` or `/node/path.key=value`.
         live: file of parameters that is read again whenever it is saved; none where None.
@@ -40,6 +42,7 @@ class RunOptions:
     speed: float | None = None
     goal: tuple[float, float, float] | None = None
     time_limit: float = 180.0
+    robot: str = DEFAULT_ROBOT
     preset: str | None = None
     assignments: tuple[str, ...] = ()
     live: Path | None = None

@@ -98,7 +98,7 @@ class Summary(Figures):
 
     Attributes:
         outcome, reason: how it ended, and why in one sentence.
-        course, tree, world, executor, preset, seed: what ran.
+        course, tree, world, executor, robot, preset, seed: what ran.
         wall_s: wall time of the run, without set-up.
         versions: of the packages that can change a figure.
         trace_hash: equal if and only if two runs were the same to the bit.
@@ -110,6 +110,7 @@ class Summary(Figures):
     tree: str
     world: str
     executor: str
+    robot: str
     preset: str | None
     seed: int
     wall_s: float

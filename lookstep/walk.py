@@ -51,7 +51,7 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
     """
     _check(options)
     assignments = split_assignments(options.assignments)
-    configuration = load_configuration(options.preset, assignments.subjects)
+    configuration = load_configuration(options.preset, assignments.subjects, options.robot)
     spec = load_tree(tree_path(options.tree))
     course = _course(options, assignments.course)
     faults = () if options.faults is None else load_faults(options.faults, course)
@@ -253,6 +253,7 @@ def _summarise(ending: _Ending, statistics: Statistics, tree: Tree, options: Run
         tree=tree.spec.name,
         world=options.world,
         executor=options.executor,
+        robot=options.robot,
         preset=options.preset,
         seed=options.seed,
         wall_s=round(ending.wall_s, 3),

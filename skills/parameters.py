@@ -60,11 +60,18 @@ def _validate(instance: Any) -> None:
 def check_value(key: str, value: Any, default: Any, metadata: Any) -> None:
     """Check one value against the type of its default and the range in its metadata.
 
-    A tuple is checked element by element and must have as many elements as its default.
+    A tuple is checked element by element and must have as many elements as its default; one of tuples may have any
+    number of them.
 
     Raises:
         ParameterError: where the value is not allowed; the message names the value and what is allowed.
     """
+    if isinstance(default, tuple) and default and isinstance(default[0], tuple):
+        if not isinstance(value, tuple):
+            raise ParameterError(key, f"got {value!r}, needs a list")
+        for element in value:
+            check_value(key, element, default[0], metadata)
+        return
     if isinstance(default, tuple):
         if not isinstance(value, tuple) or len(value) != len(default):
             raise ParameterError(key, f"got {value!r}, needs {len(default)} values")

@@ -27,16 +27,25 @@ def _lines(values: Any, indent: str) -> Iterator[str]:
     heads: dict[str, str] = {}
     for field in fields:
         value = getattr(values, field.name)
-        if not dataclasses.is_dataclass(value):
+        if _is_table(value):
+            heads[field.name] = f"{indent}{field.name}:"
+        elif not dataclasses.is_dataclass(value):
             heads[field.name] = f"{indent}{field.name}: {_text(value)}"
     width = max((len(head) for head in heads.values()), default=0)
     for field in fields:
         if field.name in heads:
             remark = _remark(field.metadata)
             yield f"{heads[field.name]:<{width}}  # {remark}" if remark else heads[field.name]
+            if _is_table(value := getattr(values, field.name)):
+                yield from (f"{indent}{_INDENT}- {_text(row)}" for row in value)
         else:
             yield f"{indent}{field.name}:"
             yield from _lines(getattr(values, field.name), indent + _INDENT)
+
+
+def _is_table(value: Any) -> bool:
+    """Whether a value is written as one row a line."""
+    return isinstance(value, tuple) and bool(value) and all(isinstance(row, tuple) for row in value)
 
 
 def _remark(metadata: Any) -> str:

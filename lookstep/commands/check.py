@@ -1,4 +1,4 @@
-"""`lookstep check`: is a tree, a course, a config file or a preset sound, and if not, where."""
+"""`lookstep check`: is a tree, a course, a config file, a robot or a preset sound, and if not, where."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from lookstep.trees import tree_path
 from strict_yaml import Kind, Node, Problem, YamlError, load_document, read_dataclass
 
 NAME = "check"
-HELP = "check tree, course, config and preset files and print every problem with file:line:column"
+HELP = "check tree, course, config, robot and preset files and print every problem with file:line:column"
 EXAMPLE = "lookstep check look_and_step my_course.yaml"
 
 _COURSE_KEYS = {"generator", "objects", "start", "goal"}
@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "files",
         nargs="+",
         metavar="FILE",
-        help="a tree, a course, a preset, or a config file that is called after its subject, such as footsteps.yaml; "
+        help="a tree, a course, a robot, a preset, or a config file that is called after its subject, such as footsteps.yaml; "
         "or the name of a shipped tree",
     )
     parser.add_argument("--strict", action="store_true", help="remarks, such as values that nobody reads, are problems")
@@ -54,7 +54,7 @@ def _check(name: str) -> tuple[str, tuple[Problem, ...]]:
     Raises:
         YamlError: where it has problems.
     """
-    from lookstep.configuration import SUBJECTS, load_configuration
+    from lookstep.configuration import SUBJECTS
     from sim_envs.courses import load_course
 
     path = tree_path(name)
@@ -68,9 +68,19 @@ def _check(name: str) -> tuple[str, tuple[Problem, ...]]:
             load_course(str(path))
             return "course", ()
         if keys & set(SUBJECTS):
-            load_configuration(preset=str(path))
-            return "preset", ()
+            return _check_layer(path, document), ()
     return "tree", _check_tree(path)
+
+
+def _check_layer(path: Path, document: Node) -> str:
+    from lookstep.configuration import load_configuration
+
+    table = document.get("robot")
+    if table is not None and "mjcf" in table.keys:
+        load_configuration(robot=str(path))
+        return "robot"
+    load_configuration(preset=str(path))
+    return "preset"
 
 
 def _check_config(document: Node, cls: type, subject: str) -> None:

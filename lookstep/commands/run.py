@@ -26,6 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--speed", type=float, help="pace: robot time per wall time (as fast as possible; realtime: 1)")
     parser.add_argument("--goal", type=_goal, metavar="X,Y,YAW", help="goal in metres and radians (the course's own)")
     parser.add_argument("--time-limit", type=float, default=defaults.time_limit, help="robot time [s] (%(default)s)")
+    parser.add_argument("--robot", default=defaults.robot, help="shipped robot or YAML file (%(default)s)")
     parser.add_argument("--preset", help="shipped preset or YAML file, such as fast")
     parser.add_argument(
         "--set",
@@ -62,6 +63,7 @@ def execute(options: argparse.Namespace) -> int:
         speed=options.speed,
         goal=options.goal,
         time_limit=options.time_limit,
+        robot=options.robot,
         preset=options.preset,
         assignments=tuple(options.assignments),
         faults=options.faults,

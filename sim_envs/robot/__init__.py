@@ -1,4 +1,4 @@
-"""The robot: an Atlas-class biped as one MJCF file for MuJoCo and pinocchio, and a table of what else to know."""
+"""Robots: each one MJCF file for MuJoCo and pinocchio, and a table of what else to know."""
 
 from sim_envs.robot.biped import Biped
 from sim_envs.robot.configuration import (
@@ -8,9 +8,10 @@ from sim_envs.robot.configuration import (
     qvel_from_velocity,
     velocity_from_qvel,
 )
-from sim_envs.robot.robot_description import RobotDescription
+from sim_envs.robot.robot_description import SHIPPED_ROBOTS, RobotDescription
 
 __all__ = [
+    "SHIPPED_ROBOTS",
     "Biped",
     "RobotDescription",
     "configuration_from_qpos",

@@ -8,7 +8,9 @@ import numpy as np
 from dm_control import composer, mjcf
 
 from sim_envs.robot.robot_description import RobotDescription
+from skills.footsteps.footstep import Side
 from skills.geometry.pose import Pose, rotation_x
+from skills.walking import RobotError
 
 _CAMERA_HALF_SIZE = (0.045, 0.0125, 0.0125)
 _CAMERA_BEHIND_LENS = 0.02
@@ -18,11 +20,20 @@ _HOUSING_COLOR = (0.22, 0.24, 0.28, 1.0)
 
 
 class Biped(composer.Entity):
-    """A biped without a free joint; an arena adds one with `add_free_entity`."""
+    """A biped without a free joint; an arena adds one with `add_free_entity`.
+
+    Raises:
+        RobotError: where the MJCF file lacks what the simulation needs.
+    """
 
     def _build(self, description: RobotDescription) -> None:
         self._description = description
+        if not description.mjcf_path.is_file():
+            raise RobotError(f"{description.mjcf_path}: there is no such MJCF file")
         self._mjcf_root = mjcf.from_path(str(description.mjcf_path))
+        for side in Side:
+            self._need("sensor", f"{side.value}_touch")
+            self._need("geom", f"{side.value}_foot_collision")
         self._add_camera()
         self._add_lidar()
 
@@ -45,8 +56,13 @@ class Biped(composer.Entity):
     def _mount(self, parameter: str, name: str) -> Any:
         body = self._mjcf_root.find("body", name)
         if body is None:
-            raise ValueError(f"{parameter}: got {name!r}, which is no body of {self._description.mjcf}")
+            bodies = ", ".join(found.name for found in self._mjcf_root.find_all("body"))
+            raise RobotError(f"{parameter}: got {name!r}, the bodies of {self._description.mjcf} are {bodies}")
         return body
+
+    def _need(self, kind: str, name: str) -> None:
+        if self._mjcf_root.find(kind, name) is None:
+            raise RobotError(f"{self._description.mjcf_path}: there is no {kind} {name!r}")
 
     @property
     def mjcf_model(self) -> mjcf.RootElement:

@@ -12,7 +12,7 @@ from skills.geometry.camera import looking
 from skills.geometry.pose import Pose, rotation_y
 from skills.parameters import parameter, parameters
 
-_FOLDER = Path(__file__).parent
+SHIPPED_ROBOTS = Path(__file__).parent
 
 
 @parameters
@@ -50,7 +50,7 @@ class RobotDescription:
     @property
     def mjcf_path(self) -> Path:
         """Where the MJCF file is; both MuJoCo and pinocchio load it by name."""
-        return _FOLDER / self.mjcf
+        return SHIPPED_ROBOTS / self.mjcf
 
     @property
     def T_body_camera(self) -> Pose:

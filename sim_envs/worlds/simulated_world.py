@@ -40,7 +40,7 @@ from skills.geometry.camera import DepthImage
 from skills.geometry.lidar import LidarScan
 from skills.geometry.pose import Array, Pose
 from skills.parameters import parameter, parameters
-from skills.walking import RobotModel, Walker, WalkerParameters
+from skills.walking import RobotError, RobotModel, Walker, WalkerParameters
 from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingStatus
 
 _ROUNDING = 1e-9  # Robot time is a sum of floats; what is due this soon is due now [s].
@@ -71,7 +71,7 @@ class SimulatedWorld:
         seed: of the noise.
 
     Raises:
-        ValueError: where there is no ground under a foot at the start.
+        RobotError: where there is no such robot, or no ground under a foot at the start.
     """
 
     def __init__(
@@ -269,7 +269,7 @@ class SimulatedWorld:
             p = middle @ np.array((0.0, 0.5 * side.sign * self.parameters.stance_width, 0.0))
             height = self.ground.ground_height(p[None, :2])[0]
             if np.isinf(height):
-                raise ValueError(
+                raise RobotError(
                     f"course {self.course.name}: there is no ground under the {side.value} foot at the start"
                 )
             soles.append(Pose.from_xyz_rpy((p[0], p[1], height), (0.0, 0.0, yaw)))

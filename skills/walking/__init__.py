@@ -1,6 +1,6 @@
 """Walking over footsteps: balance, swing and joint motion."""
 
-from skills.walking.robot_model import RobotModel
+from skills.walking.robot_model import RobotError, RobotModel
 from skills.walking.step_adjustment import StepAdjustmentParameters
 from skills.walking.swing_parameters import SwingParameters
 from skills.walking.walker import BodyMeasurement, Walker, WalkerParameters
@@ -18,6 +18,7 @@ from skills.walking.whole_body_parameters import WholeBodyParameters
 __all__ = [
     "BodyMeasurement",
     "ControlSample",
+    "RobotError",
     "RobotModel",
     "RobotState",
     "StepAdjustmentParameters",

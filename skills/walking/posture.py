@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from skills.footsteps.footstep import Side, Stance
+from skills.footsteps.footstep import Stance
 from skills.geometry.pose import Array, Pose, rotation_y, rotation_z
 from skills.walking.inverse_kinematics import IkSolution, InverseKinematics
-from skills.walking.robot_model import RobotModel
+from skills.walking.robot_model import RobotError, RobotModel
 from skills.walking.walking_parameters import WalkingParameters
 
 _ITERATIONS = 100
@@ -17,21 +17,19 @@ _COM_RESIDUAL = 0.03
 
 
 def nominal_posture(model: RobotModel, parameters: WalkingParameters) -> Array:
-    """Bent knees, arms at the sides, (7 + n,) with the pelvis at the origin."""
+    """Bent knees, arms at the sides, (7 + n,) with the pelvis at the origin.
+
+    Raises:
+        RobotError: where the posture names a joint that the robot has not.
+    """
     q = model.neutral_configuration()
-    for side in Side:
-        for name, angle in (
-            ("shoulder_yaw", parameters.shoulder_yaw * side.sign),
-            ("shoulder_roll", parameters.shoulder_roll * side.sign),
-            ("elbow_pitch", parameters.elbow_pitch),
-            ("elbow_roll", parameters.elbow_roll * side.sign),
-        ):
-            joint = f"{side.value}_{name}"
-            if joint in model.joint_names:
-                q[7 + model.joint_names.index(joint)] = angle
-        hip, knee, ankle = model.legs[side].joints[2:5]
-        bend = parameters.knee_bend
-        q[[7 + hip, 7 + knee, 7 + ankle]] = -0.5 * bend, bend, -0.5 * bend
+    for name, angle in parameters.posture:
+        if name not in model.joint_names:
+            raise RobotError(f"posture: got joint {name!r}, the robot has {', '.join(model.joint_names)}")
+        q[7 + model.joint_names.index(name)] = angle
+    bend = parameters.knee_bend
+    for leg in model.legs.values():
+        q[[7 + leg.hip_pitch, 7 + leg.knee, 7 + leg.ankle_pitch]] = -0.5 * bend, bend, -0.5 * bend
     q[7:] = np.clip(q[7:], model.lower_limits, model.upper_limits)
     return q
 
@@ -40,7 +38,7 @@ def standing_configuration(model: RobotModel, stance: Stance, parameters: Walkin
     """The configuration that stands on a stance with the CoM between the feet, (7 + n,).
 
     Raises:
-        ValueError: where the legs do not reach.
+        RobotError: where the legs do not reach.
     """
     p = parameters
     height = min(sole.p[2] for sole in (stance.T_world_left, stance.T_world_right)) + p.com_height
@@ -52,7 +50,7 @@ def standing_configuration(model: RobotModel, stance: Stance, parameters: Walkin
     solution = InverseKinematics(model).solve(q, com, R, stance, _ITERATIONS, _TOLERANCE)
     failure = _out_of_reach(solution)
     if failure:
-        raise ValueError(
+        raise RobotError(
             f"the robot cannot stand on soles at {stance.T_world_left.p}, {stance.T_world_right.p}: {failure}"
         )
     return solution.q

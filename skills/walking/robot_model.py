@@ -2,7 +2,8 @@
 
 A configuration is q = (pelvis position 3, pelvis quaternion xyzw 4, joints n) in the world, and a velocity is
 (linear 3 and angular 3 in the pelvis frame, joint rates n), both in the order of pinocchio (Carpentier et al., 2019).
-A leg is six joints from the pelvis to the sole: hip yaw, roll, pitch, knee, ankle pitch, roll.
+A leg is six joints from the pelvis to the sole: three of the hip in any order, one of them pitch, then knee, ankle pitch
+and ankle roll. What a joint is for follows from its place in that chain and from its axis, never from its name.
 """
 
 from __future__ import annotations
@@ -18,6 +19,11 @@ from skills.geometry.pose import Array, Pose, readonly
 from skills.walking.walking_state import RobotState
 
 _JOINTS_IN_LEG = 6
+_SIDEWAYS = (0.0, 1.0, 0.0)
+
+
+class RobotError(ValueError):
+    """A robot that its description, its MJCF file or the ground under it does not allow."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,25 +32,24 @@ class Leg:
 
     Attributes:
         joints: its places among the robot's joints, hip to ankle.
-        p_pelvis_hip: hip pitch joint in the pelvis frame with yaw and roll at zero, (3,) [m].
+        hip_pitch, knee, ankle_pitch: those of them that bend the leg.
+        p_pelvis_hip: last hip joint in the pelvis frame with those before it at zero, (3,) [m].
         p_sole_ankle: ankle in the sole frame, (3,) [m].
-        thigh, shank: hip pitch to knee, knee to ankle [m].
+        thigh, shank: hip to knee, knee to ankle [m].
         knee_offset: knee angle at which hip, knee and ankle are in line [rad].
         mass_at_ankle: mass that, put at the ankle, moves the CoM as the leg does when hip or ankle moves [kg].
     """
 
     joints: tuple[int, ...]
+    hip_pitch: int
+    knee: int
+    ankle_pitch: int
     p_pelvis_hip: Array
     p_sole_ankle: Array
     thigh: float
     shank: float
     knee_offset: float
     mass_at_ankle: float
-
-    @property
-    def knee(self) -> int:
-        """The knee's place among the robot's joints."""
-        return self.joints[3]
 
     def length(self, knee: float) -> float:
         """Distance from hip to ankle at a knee angle [m]."""
@@ -61,14 +66,14 @@ class RobotModel:
         torso: name of the body that is kept upright.
 
     Raises:
-        ValueError: where the file has no such robot.
+        RobotError: where the file has no such robot.
     """
 
     def __init__(
         self, mjcf_path: str | Path, sole_length: float = 0.26, sole_width: float = 0.138, torso: str = "torso"
     ) -> None:
         if not Path(mjcf_path).is_file():
-            raise ValueError(f"{mjcf_path}: there is no such MJCF file")
+            raise RobotError(f"{mjcf_path}: there is no such MJCF file")
         built = pin.buildModelAndLegacyConstraintsFromMJCF(str(mjcf_path), pin.JointModelFreeFlyer(), "root")
         self.pin_model: pin.Model = built[0]
         self._data = self.pin_model.createData()
@@ -85,7 +90,7 @@ class RobotModel:
         self.legs = {side: self._leg(side, mjcf_path) for side in Side}
         self.torso_frame = torso
         if not self.pin_model.existFrame(torso):
-            raise ValueError(f"{mjcf_path}: there is no body {torso!r} for the torso")
+            raise RobotError(f"{mjcf_path}: there is no body {torso!r} for the torso")
         carried_by = self.pin_model.supports[self.pin_model.frames[self.pin_model.getFrameId(torso)].parentJoint]
         self.back = tuple(int(joint) - 2 for joint in carried_by if joint >= 2)
 
@@ -156,8 +161,15 @@ class RobotModel:
         chain = [int(joint) for joint in model.supports[model.frames[frame].parentJoint]][2:]
         if len(chain) != _JOINTS_IN_LEG:
             names = ", ".join(model.names[joint] for joint in chain)
-            raise ValueError(f"{mjcf_path}: the {side.value} leg has the joints {names}, needs {_JOINTS_IN_LEG}")
+            raise RobotError(f"{mjcf_path}: the {side.value} leg has the joints {names}, needs {_JOINTS_IN_LEG}")
         pin.forwardKinematics(model, self._data, q)
+        bending = [joint for joint in chain if np.allclose(self._axis(joint), _SIDEWAYS, atol=1e-6)]
+        if len(bending) != 3 or bending[1:] != chain[3:5]:
+            names = ", ".join(model.names[joint] for joint in bending)
+            raise RobotError(
+                f"{mjcf_path}: the {side.value} leg bends about +y at {names or 'no joint'}; needs one joint of its hip, "
+                f"the knee {model.names[chain[3]]} and the ankle {model.names[chain[4]]}"
+            )
         hip, knee, ankle = (np.array(self._data.oMi[chain[i]].translation) for i in (2, 3, 4))
         thigh, shank = hip - knee, knee - ankle
         bodies = [(model.inertias[joint], self._data.oMi[joint]) for joint in chain]
@@ -165,6 +177,9 @@ class RobotModel:
         shares = [mass * np.clip((hip[2] - height) / (hip[2] - ankle[2]), 0.0, 1.0) for mass, height in heights]
         return Leg(
             joints=tuple(joint - 2 for joint in chain),
+            hip_pitch=bending[0] - 2,
+            knee=bending[1] - 2,
+            ankle_pitch=bending[2] - 2,
             p_pelvis_hip=readonly(hip),
             p_sole_ankle=readonly(self._frame_pose(q, frame).inverse @ ankle),
             thigh=float(np.linalg.norm(thigh)),
@@ -173,9 +188,14 @@ class RobotModel:
             mass_at_ankle=float(sum(shares)),
         )
 
+    def _axis(self, joint: int) -> Array:
+        """Axis of a revolute joint in the pelvis frame where the data's kinematics were computed, (3,)."""
+        motion = pin.computeJointJacobian(self.pin_model, self._data, self.neutral_configuration(), joint)
+        return self._data.oMi[joint].rotation @ motion[3:, self.pin_model.joints[joint].idx_v]
+
 
 def _sole_frame(model: pin.Model, side: Side, mjcf_path: str | Path) -> int:
     name = f"{side.value}_sole"
     if not model.existFrame(name):
-        raise ValueError(f"{mjcf_path}: there is no site {name!r}")
+        raise RobotError(f"{mjcf_path}: there is no site {name!r}")
     return int(model.getFrameId(name))

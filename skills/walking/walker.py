@@ -94,7 +94,7 @@ class Walker:
         self._model, self._parameters, self._body_parameters = model, walking, whole_body
         self.start_configuration = standing_configuration(model, stance, walking)
         self._body = BodyDynamics(model)
-        self._contact_times = ContactTimes(walking.touchdown_force)
+        self._contact_times = ContactTimes(walking.touchdown_load * model.mass * walking.gravity)
         self._whole_body = WholeBodyController(model, whole_body, make_solver)
         self._gait = Gait(stance, model.foothold_sole, walking, parameters.swing)
         self._objectives = MotionObjectives(self._gait, model, walking, whole_body)

@@ -57,7 +57,9 @@ class WalkingParameters:
         0.05, unit="m", meaning="a DCM this far out of support and off its plan is a fall", minimum=0.0
     )
 
-    touchdown_force: float = parameter(80.0, unit="N", meaning="normal force that tells a landed foot", minimum=1.0)
+    touchdown_load: float = parameter(
+        0.047, unit="1", meaning="share of the weight on a foot that tells it has landed", minimum=0.001, maximum=0.5
+    )
     touchdown_time: float = parameter(0.004, unit="s", meaning="how long it must last", minimum=0.0, maximum=0.1)
     touchdown_share: float = parameter(
         0.7, unit="1", meaning="share of the swing before which no contact is a landing", minimum=0.0, maximum=1.0
@@ -77,7 +79,17 @@ class WalkingParameters:
 
     knee_bend: float = parameter(1.0, unit="rad", meaning="knee angle that standing is solved from", minimum=0.2)
     pelvis_pitch: float = parameter(0.03, unit="rad", meaning="forward lean of the pelvis", minimum=-0.5, maximum=0.5)
-    shoulder_yaw: float = parameter(-0.3, unit="rad", meaning="posture of the left arm, mirrored on the right")
-    shoulder_roll: float = parameter(-1.2, unit="rad", meaning="posture of the left arm, mirrored on the right")
-    elbow_pitch: float = parameter(radians(90.0), unit="rad", meaning="posture of both arms")
-    elbow_roll: float = parameter(0.6, unit="rad", meaning="posture of the left arm, mirrored on the right")
+    posture: tuple[tuple[str, float], ...] = parameter(
+        (
+            ("left_shoulder_yaw", -0.3),
+            ("left_shoulder_roll", -1.2),
+            ("left_elbow_pitch", radians(90.0)),
+            ("left_elbow_roll", 0.6),
+            ("right_shoulder_yaw", 0.3),
+            ("right_shoulder_roll", 1.2),
+            ("right_elbow_pitch", radians(90.0)),
+            ("right_elbow_roll", -0.6),
+        ),
+        unit="rad",
+        meaning="angles that joints of arms and back are drawn to, by name; all others 0",
+    )

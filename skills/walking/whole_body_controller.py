@@ -29,7 +29,8 @@ from skills.walking.quadratic_program import MakeSolver, OsqpSolver, QpSolver, Q
 from skills.walking.robot_model import RobotModel
 from skills.walking.whole_body_parameters import WholeBodyParameters
 
-_FORCE_UNIT = 100.0  # Weights of rays are in 100 N, so that all unknowns are of one size [N].
+_GRAVITY = 9.81
+_WEIGHT_OF_RAYS = 17.0  # Weights of rays are in this part of the robot's weight, so that all unknowns are of one size.
 _CORNERS = RAYS // CONTACT_POINTS
 _ROWS = 21  # CoM 3, angular momentum 3, torso 3, soles 6 each; pelvis and posture are single columns.
 _SAMPLES = 8
@@ -111,6 +112,7 @@ class WholeBodyController:
         make_solver: MakeSolver | None = None,
     ) -> None:
         self._model, self._parameters = model, parameters
+        self._force_unit = model.mass * _GRAVITY / _WEIGHT_OF_RAYS
         n = self._joints = len(model.joint_names)
         nv = self._nv = n + 6
         size, rows = nv + 2 * RAYS, nv + n + 2 * RAYS
@@ -138,7 +140,7 @@ class WholeBodyController:
         torques = self._A[rows] @ np.concatenate((acceleration, rho)) + body.bias[6:]
         self._torques = np.clip(torques, -self._effort, self._effort)
         wrenches = {
-            side: np.zeros(6) if task.contact is None else task.contact.rays_wrench @ (part * _FORCE_UNIT)
+            side: np.zeros(6) if task.contact is None else task.contact.rays_wrench @ (part * self._force_unit)
             for (side, task), part in zip(_in_order(tasks), np.split(rho, 2), strict=True)
         }
         return BodyCommand(self._torques, acceleration, wrenches, solution.status, solution.iterations)
@@ -191,7 +193,7 @@ class WholeBodyController:
             if task.contact is None:
                 A[:nv, columns], upper[bounds] = 0.0, 0.0
             else:
-                A[:nv, columns] = body.sole_jacobians[side].T @ (-_FORCE_UNIT * task.contact.rays_wrench)
+                A[:nv, columns] = body.sole_jacobians[side].T @ (-self._force_unit * task.contact.rays_wrench)
                 upper[bounds] = np.where(np.repeat(task.contact.loaded, _CORNERS), np.inf, 0.0)
 
     def _acceleration_limits(self, body: BodyDynamics) -> tuple[Array, Array]:

@@ -21,7 +21,9 @@ class WholeBodyParameters:
     back_weight: float = parameter(0.1, unit="1", meaning="posture of the back", minimum=0.0)
     leg_weight: float = parameter(0.01, unit="1", meaning="posture of the legs", minimum=0.0)
     bent_knee_weight: float = parameter(5.0, unit="1", meaning="bend of the trailing knee in toe-off", minimum=0.0)
-    force_weight: float = parameter(0.005, unit="1/(100 N)^2", meaning="regularisation of contact forces", minimum=1e-6)
+    force_weight: float = parameter(
+        0.005, unit="1", meaning="contact forces, in seventeenths of the robot's weight", minimum=1e-6
+    )
 
     height_stiffness: float = parameter(40.0, unit="1/s^2", meaning="CoM height", minimum=0.0)
     height_damping: float = parameter(11.0, unit="1/s", meaning="CoM height", minimum=0.0)
