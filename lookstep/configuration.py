@@ -1,7 +1,8 @@
 """Every parameter of a run, gathered from the classes, the config files, the robot, a preset and the command line.
 
 Precedence, weakest first: default of the class < `config/<subject>.yaml` < `config/robots/<robot>.yaml` < preset <
-`--set subject.key=value`. Tree nodes and `--set /node/path.key=value` override parameters of single leaves; the tree loader applies those.
+`--set subject.key=value`. Tree nodes and `--set /node/path.key=value` override parameters of single leaves; the tree
+loader applies those.
 """
 
 from __future__ import annotations

@@ -22,8 +22,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "files",
         nargs="+",
         metavar="FILE",
-        help="a tree, a course, a robot, a preset, or a config file that is called after its subject, such as footsteps.yaml; "
-        "or the name of a shipped tree",
+        help="a tree, a course, a robot, a preset, or a config file that is called after its subject, such as "
+        "footsteps.yaml; or the name of a shipped tree",
     )
     parser.add_argument("--strict", action="store_true", help="remarks, such as values that nobody reads, are problems")
 

@@ -2,8 +2,8 @@
 
 A configuration is q = (pelvis position 3, pelvis quaternion xyzw 4, joints n) in the world, and a velocity is
 (linear 3 and angular 3 in the pelvis frame, joint rates n), both in the order of pinocchio (Carpentier et al., 2019).
-A leg is six joints from the pelvis to the sole: three of the hip in any order, one of them pitch, then knee, ankle pitch
-and ankle roll. What a joint is for follows from its place in that chain and from its axis, never from its name.
+A leg is six joints from the pelvis to the sole: three of the hip in any order, one of them pitch, then knee, ankle
+pitch and ankle roll. What a joint is for follows from its place in that chain and from its axis, never from its name.
 """
 
 from __future__ import annotations
@@ -167,8 +167,8 @@ class RobotModel:
         if len(bending) != 3 or bending[1:] != chain[3:5]:
             names = ", ".join(model.names[joint] for joint in bending)
             raise RobotError(
-                f"{mjcf_path}: the {side.value} leg bends about +y at {names or 'no joint'}; needs one joint of its hip, "
-                f"the knee {model.names[chain[3]]} and the ankle {model.names[chain[4]]}"
+                f"{mjcf_path}: the {side.value} leg bends about +y at {names or 'no joint'}; needs one joint of its "
+                f"hip, the knee {model.names[chain[3]]} and the ankle {model.names[chain[4]]}"
             )
         hip, knee, ankle = (np.array(self._data.oMi[chain[i]].translation) for i in (2, 3, 4))
         thigh, shank = hip - knee, knee - ankle

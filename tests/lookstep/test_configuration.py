@@ -2,7 +2,14 @@
 
 import pytest
 
-from lookstep.configuration import SUBJECTS, config_files, load_configuration, preset_names, split_assignments
+from lookstep.configuration import (
+    SUBJECTS,
+    config_files,
+    load_configuration,
+    preset_names,
+    robot_names,
+    split_assignments,
+)
 from strict_yaml import YamlError, shipped
 
 
@@ -23,6 +30,39 @@ def test_assignment_wins_over_preset_and_preset_over_config(tmp_path):
     assert configuration.footsteps.swing_duration == 1.5
     assert configuration.footsteps.transfer_duration == 0.7
     assert configuration.footsteps.reach == load_configuration().footsteps.reach
+
+
+@pytest.mark.parametrize("robot", robot_names())
+def test_every_shipped_robot_is_valid(robot):
+    assert load_configuration(robot=robot).robot.mjcf_path.is_file()
+
+
+def test_the_default_robot_is_what_the_classes_say():
+    assert all(load_configuration().by_subject()[subject] == cls() for subject, cls in SUBJECTS.items())
+
+
+def test_a_robot_wins_over_config_and_a_preset_over_the_robot(tmp_path):
+    preset = tmp_path / "high.yaml"
+    preset.write_text("walking: {com_height: 0.68}\n")
+    courier, high = load_configuration(robot="courier"), load_configuration(str(preset), robot="courier")
+    assert courier.walking.com_height != load_configuration().walking.com_height
+    assert high.walking.com_height == 0.68
+    assert high.walking.posture == courier.walking.posture
+    assert {name for name, _ in courier.walking.posture}.isdisjoint(
+        name for name, _ in load_configuration().walking.posture
+    )
+
+
+def test_a_robot_of_ones_own_finds_its_mjcf_file_beside_it(tmp_path):
+    (tmp_path / "walker.xml").write_text("<mujoco/>")
+    robot = tmp_path / "walker.yaml"
+    robot.write_text("robot:\n  mjcf: walker.xml\n")
+    assert load_configuration(robot=str(robot)).robot.mjcf_path == tmp_path / "walker.xml"
+    robot.write_text("robot:\n  mjcf: walkr.xml\n")
+    with pytest.raises(YamlError, match=rf"{robot}:2:9: robot.mjcf: there is no MJCF file 'walkr.xml'"):
+        load_configuration(robot=str(robot))
+    with pytest.raises(YamlError, match='unknown robot "courir"; did you mean "courier"'):
+        load_configuration(robot="courir")
 
 
 def test_all_problems_are_told_at_once_each_at_its_place(tmp_path):
