@@ -101,6 +101,7 @@ class Retry(Decorator):
     def update(self) -> Status:
         """RUNNING until the child succeeds or has failed too often."""
         if self.context.time < self._resume_at - TIME_TOLERANCE:
+            self.reason = f"tries again {self.parameters.pause:g} s after it failed: {self.child.reason}"
             return Status.RUNNING
         status = self._tick_child()
         if status is not Status.FAILURE:

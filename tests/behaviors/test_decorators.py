@@ -101,3 +101,9 @@ def test_run_while_waits_while_the_condition_runs():
     assert tree.node("/t/work").status is Status.INVALID
     run(tree, robot, 1)
     assert tree.outcome is Outcome.SUCCESS
+
+
+def test_retry_says_that_it_pauses_and_why():
+    tree, robot = make("{tree: t, root: {retry: {pause: 2, child: {Scripted: {says: FS}}}}}")
+    run(tree, robot, 2)
+    assert tree.root.reason == "tries again 2 s after it failed: said F"

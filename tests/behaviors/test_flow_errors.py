@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pytest
 from flow_corpus import CORPUS, REMARKS, measures
-from scripted import make, run, toys
+from scripted import ScriptedRobot, make, run, toys
 
-from behaviors import Outcome, load_tree, parse_tree
+from behaviors import Outcome, Tree, load_tree, parse_tree
+from skills.footsteps import FootstepPlan, PlanOutcome
 from strict_yaml import YamlError
 
 
@@ -64,6 +65,23 @@ def test_a_condition_decides_as_it_reads(condition: str, holds: bool):
     )
     for key, value in (("n", 3.0), ("on_top", False), ("label", "x")):
         tree.set_input(key, value)
+    run(tree, robot, 1)
+    assert tree.outcome is (Outcome.SUCCESS if holds else Outcome.FAILURE)
+
+
+@pytest.mark.parametrize(
+    ("condition", "holds"),
+    [
+        ('plan.outcome == "goal_reached"', False),
+        ('plan.outcome != "goal_reached" and plan.cost < 2.0', True),
+        ("plan.plan_id + 1 == 8", True),
+    ],
+)
+def test_a_condition_reads_fields_and_compares_choices_with_their_names(condition: str, holds: bool):
+    text = f"{{tree: t, ports: {{in: {{plan: FootstepPlan}}}}, root: {{check: '{condition}'}}}}"
+    robot = ScriptedRobot()
+    tree = Tree(parse_tree(text), robot)
+    tree.set_input("plan", FootstepPlan(7, 0, PlanOutcome.PARTIAL, "", (), 1.5, 10))
     run(tree, robot, 1)
     assert tree.outcome is (Outcome.SUCCESS if holds else Outcome.FAILURE)
 
