@@ -129,7 +129,10 @@ class PlanJudge:
         share = float(np.mean(supported))
         if share < p.share - self.share_tolerance:
             found.append(f"supported share {share:.3f}")
-        highest = float(np.nanmax(self.ground(on_plane[:, :2], 0.0) - on_plane[:, 2], initial=-np.inf))
+        # A gap that counts as ground carries nothing; the polygon need not hold it.
+        on_regions = self.ground(on_plane[:, :2], 0.0) - on_plane[:, 2]
+        carried = supported & (on_regions >= -p.support_below - 1e-6)
+        highest = float(np.nanmax(on_regions, initial=-np.inf))
         if highest > p.ground_above + BETWEEN_SAMPLES:
             found.append(f"ground {1e3 * highest:.0f} mm above the sole")
         beside = self.beside(T)
@@ -138,14 +141,16 @@ class PlanJudge:
             found.append(f"cliff of {1e3 * cliff:.0f} mm beside the sole")
         if not any(abs(s.height(T.p[None])[0] - T.p[2]) < 1e-6 and plane_fits(s, T) for s in self.surfaces):
             found.append("the sole lies in the plane of no region")
-        return [*found, *self.foothold_polygon(step, xy_sole, supported)]
+        return [*found, *self.foothold_polygon(step, xy_sole, supported, carried)]
 
     share_tolerance = 0.0
     polygon_tolerance = 0.06
     cell = 0.01
 
-    def foothold_polygon(self, step: Footstep, xy_sole: Array, supported: NDArray[np.bool_]) -> list[str]:
-        """The polygon must lie in the sole, be convex and hold the supported points, but for a cell."""
+    def foothold_polygon(
+        self, step: Footstep, xy_sole: Array, supported: NDArray[np.bool_], carried: NDArray[np.bool_]
+    ) -> list[str]:
+        """The polygon must lie in the sole, be convex and hold what regions carry of it, but for a cell."""
         polygon, p = step.foothold_sole, self.p
         found = []
         if np.any(np.abs(polygon) > (0.5 * p.sole_length + ROUNDING, 0.5 * p.sole_width + ROUNDING)):
@@ -156,8 +161,8 @@ class PlanJudge:
             found.append("foothold not convex")
         normals = np.column_stack((edges[:, 1], -edges[:, 0])) / np.linalg.norm(edges, axis=1)[:, None]
         inside = np.all(np.einsum("pkd,kd->pk", xy_sole[:, None] - polygon, normals) <= ROUNDING, axis=1)
-        if np.mean(inside & supported) < np.mean(supported) - self.polygon_tolerance:
-            found.append("foothold leaves out supported sole")
+        if np.mean(inside & carried) < np.mean(carried) - self.polygon_tolerance:
+            found.append("foothold leaves out sole that is carried")
         if np.mean(inside) > np.mean(supported) + 1.0 - self.p.share + self.polygon_tolerance:
             found.append("foothold holds more than the supported sole")
         return found

@@ -70,7 +70,7 @@ def test_sizes_of_steps_are_counted_by_name():
         ("outside the searched ground", [FLOOR], {"window_margin": 0.3}),
     ],
 )  # fmt: skip
-def test_a_step_is_rejected_by_name(reason: str, regions: list[PlanarRegion], options: dict[str, float]):
+def test_a_step_is_rejected_by_name(reason: str, regions: list[PlanarRegion], options: dict[str, Any]):
     counts = dict(planned(*regions, **options).rejections)
     assert counts.get(reason, 0) > 0, counts
 
