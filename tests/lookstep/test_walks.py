@@ -93,8 +93,8 @@ def test_recording_changes_nothing_and_the_summary_lies_beside_it(tmp_path):
 
 
 def test_every_plan_of_a_run_is_logged_and_the_run_is_the_same(tmp_path):
-    plain = walk("rough", seed=4, time_limit=4.0)
-    logged = walk("rough", seed=4, time_limit=4.0, plans=tmp_path / "plans")
+    plain = walk("rough", seed=4, time_limit=2.5)
+    logged = walk("rough", seed=4, time_limit=2.5, plans=tmp_path / "plans")
     assert plain.trace_hash == logged.trace_hash
     files = sorted((tmp_path / "plans").iterdir())
     assert [file.name for file in files] == [f"{i:04d}.plan" for i in range(logged.plan.count)]

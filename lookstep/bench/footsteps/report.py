@@ -22,7 +22,7 @@ from skills.footsteps.region_map import RegionMapError, map_files, read_region_m
 
 DATA_VARIABLE = "LOOKSTEP_DATA"
 _REPEATS, _QUICK_REPEATS = 20, 3
-_WALKS, _DURATION, _QUICK_DURATION = 5, 120.0, 11.0
+_WALKS, _DURATION, _QUICK_DURATION = 5, 120.0, 6.0
 _QUICK_CAMERA = ("camera.resolution=0.3125",)
 # The foot and the limits with which the reference times were taken.
 _SMALL_FOOT = {"sole_length": 0.20, "sole_width": 0.10, "share": 0.9}
