@@ -7,7 +7,7 @@ from perfect_body import PerfectBody
 
 from skills.footsteps.footstep import Footstep, Side, Stance
 from skills.geometry.pose import Array, Pose
-from skills.walking import RobotModel, Walker, WalkerParameters, WalkingParameters
+from skills.walking import RobotModel, Walker, WalkerParameters
 from skills.walking.quadratic_program import MakeSolver
 
 MJCF = Path(__file__).parents[3] / "sim_envs" / "robot" / "atlas_class.xml"
@@ -77,9 +77,7 @@ def make_body(model: RobotModel, stance: Stance) -> Callable[..., PerfectBody]:
     def make(
         ground: Callable[[Array], Array] = lambda points: np.zeros(len(points)),
         make_solver: MakeSolver | None = None,
-        **walking: float,
     ) -> PerfectBody:
-        parameters = WalkerParameters(walking=WalkingParameters(**walking))
-        return PerfectBody(model, Walker(model, stance, parameters, make_solver), ground)
+        return PerfectBody(model, Walker(model, stance, WalkerParameters(), make_solver), ground)
 
     return make
