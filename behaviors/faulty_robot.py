@@ -15,7 +15,8 @@ from skills.footsteps.footstep import Footstep
 from skills.geometry.camera import DepthImage
 from skills.geometry.lidar import LidarScan
 from skills.geometry.pose import Pose
-from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingPhase, WalkingStatus
+from skills.walking.control_sample import ControlSample
+from skills.walking.walking_state import RobotState, StepEvent, WalkingPhase, WalkingStatus
 
 T = TypeVar("T")
 Frame = TypeVar("Frame", DepthImage, LidarScan)

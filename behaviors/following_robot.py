@@ -16,7 +16,8 @@ from behaviors.values import from_json
 from skills.footsteps.footstep import Footstep
 from skills.geometry.camera import DepthImage
 from skills.geometry.lidar import LidarScan
-from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingStatus
+from skills.walking.control_sample import ControlSample
+from skills.walking.walking_state import RobotState, StepEvent, WalkingStatus
 
 
 class FollowingRobot:

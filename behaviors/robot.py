@@ -10,7 +10,8 @@ from typing import Protocol
 from skills.footsteps.footstep import Footstep
 from skills.geometry.camera import DepthImage
 from skills.geometry.lidar import LidarScan
-from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingStatus
+from skills.walking.control_sample import ControlSample
+from skills.walking.walking_state import RobotState, StepEvent, WalkingStatus
 
 
 class Robot(Protocol):

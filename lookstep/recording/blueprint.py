@@ -46,11 +46,21 @@ def default_blueprint(start: tuple[float, float]) -> rrb.Blueprint:
         rrb.TimeSeriesView(name="Planning time [ms]", origin="/timing/PlanFootsteps"),
         rrb.TimeSeriesView(name="Region time [ms]", origin="/timing/ExtractRegions"),
         rrb.TimeSeriesView(name="Margins [ms]", origin="/margins"),
-        rrb.TimeSeriesView(name="DCM error [mm]", origin="/control/dcm_error"),
         rrb.TimeSeriesView(name="Noise at 1 m [mm]", origin="/noise"),
         rrb.TimeSeriesView(name="Drift [mm]", origin="/drift"),
-        rrb.TimeSeriesView(name="Sideways motion [m]", origin="/control/lateral"),
         name="Plots",
+    )
+    control = rrb.Tabs(
+        rrb.TimeSeriesView(name="Sideways [m]", origin="/control/lateral"),
+        rrb.TimeSeriesView(name="Forward of the CoM [m]", origin="/control/forward"),
+        rrb.TimeSeriesView(name="Errors of DCM and CoP [mm]", origin="/control/errors"),
+        rrb.StateTimelineView(name="Contacts", origin="/contacts"),
+        rrb.TimeSeriesView(name="Foot forces [N]", origin="/control/forces"),
+        rrb.TimeSeriesView(name="Angular momentum [N m s]", origin="/control/momentum"),
+        rrb.TimeSeriesView(name="Leg torques [% of limit]", origin="/control/torques/legs"),
+        rrb.TimeSeriesView(name="Body torques [% of limit]", origin="/control/torques/body"),
+        rrb.TimeSeriesView(name="Quadratic program", origin="/control/qp"),
+        name="Balance",
     )
     reasons = rrb.Tabs(
         rrb.TextLogView(name="Reasons", origin="/log"),
@@ -59,7 +69,7 @@ def default_blueprint(start: tuple[float, float]) -> rrb.Blueprint:
     return rrb.Blueprint(
         rrb.Horizontal(
             rrb.Vertical(rrb.Tabs(scene, around, active_tab=0), tree, row_shares=[3, 2]),
-            rrb.Vertical(eyes, plots, reasons, row_shares=[3, 3, 3]),
+            rrb.Vertical(eyes, control, plots, reasons, row_shares=[3, 3, 2, 2]),
             column_shares=[3, 2],
         ),
         rrb.BlueprintPanel(state="collapsed"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import rerun as rr
@@ -23,6 +24,14 @@ class Columns:
     def scalar(self, entity: str, time: float, value: float) -> None:
         """One point of a plot."""
         self._scalars[entity].append((time, value))
+
+    def send_scalars(self, times: Sequence[float], plots: Mapping[str, Array]) -> None:
+        """All points of several entities' plots at the same times, each (times, plots)."""
+        # As numpy's time spans: rerun turns numbers into spans one by one.
+        spans = np.round(1e9 * np.asarray(times)).astype("timedelta64[ns]")
+        column = rr.TimeColumn(TIMELINE, duration=spans)
+        for entity, values in plots.items():
+            rr.send_columns(entity, [column], rr.Scalars.columns(scalars=values), recording=self._stream)
 
     def state(self, entity: str, time: float, state: str) -> None:
         """One change of a lane."""

@@ -19,6 +19,7 @@ from lookstep.moment import Moment
 from lookstep.recording import palette, scene
 from lookstep.recording.blueprint import TIMELINE, default_blueprint
 from lookstep.recording.columns import Columns
+from lookstep.recording.control import ControlViews
 from lookstep.recording.perception import PerceptionViews
 from sim_envs.robot import RobotDescription
 from sim_envs.worlds import SimulatedWorld
@@ -68,6 +69,7 @@ class Recording:
         self._sole = robot.sole_corners_sole
         self._columns = Columns(self._stream)
         self._perception = PerceptionViews(self._stream, self._columns)
+        self._control = ControlViews(self._stream, self._columns, world.joint_names)
         self._taken: list[tuple[Side, Pose]] = []
         self._seen: dict[str, Any] = {}
         self._reasons: dict[str, str] = {}
@@ -95,22 +97,22 @@ class Recording:
         self._log_steps(moment)
         if moment.time >= self._next_flush:
             self._next_flush = moment.time + _FLUSH_PERIOD
-            self._columns.flush()
+            self._flush()
 
     def close(self) -> None:
         """Write what is left and close the file."""
-        self._columns.flush()
+        self._flush()
         self._stream.flush()
         self._stream.disconnect()
+
+    def _flush(self) -> None:
+        self._control.flush()
+        self._columns.flush()
 
     def _log_static(self, about: str) -> None:
         self._stream.log("world", rr.ViewCoordinates.RIGHT_HAND_Z_UP, static=True)
         self._stream.log("about", rr.TextDocument(about, media_type="text/markdown"), static=True)
         for entity, color, name in (
-            ("control/dcm_error", palette.DCM, "DCM error"),
-            ("control/lateral/com", palette.COM, "CoM"),
-            ("control/lateral/dcm", palette.DCM, "DCM"),
-            ("control/lateral/cop", palette.RIGHT, "CoP"),
             ("noise/own", palette.MEASURED, "of a pixel"),
             ("noise/shared", palette.BUDGET, "shared by neighbours"),
             ("drift/shift", palette.MEASURED, "correction of the estimate"),
@@ -141,11 +143,7 @@ class Recording:
         if boxes != self._box_poses:
             self._box_poses = boxes
             self._stream.log("world/course", scene.course_boxes(self._course, boxes))
-        for sample in moment.samples:
-            self._columns.scalar("control/dcm_error", sample.time, 1e3 * sample.dcm_error)
-            self._columns.scalar("control/lateral/com", sample.time, sample.com_world[1])
-            self._columns.scalar("control/lateral/dcm", sample.time, sample.dcm_world[1])
-            self._columns.scalar("control/lateral/cop", sample.time, sample.cop_world[1])
+        self._control.log(moment.samples)
 
     def _log_value(self, key: str, value: Any, moment: Moment) -> None:
         """Log a port value by its type, so that any tree's ports are shown, whatever their names."""

@@ -13,6 +13,7 @@ from collections import deque
 
 import mujoco
 import numpy as np
+from numpy.typing import NDArray
 
 from sim_envs.robot import configuration_from_qpos, qpos_from_configuration, velocity_from_qvel
 from skills.footsteps.footstep import Side
@@ -84,6 +85,7 @@ class PhysicsBody:
         self._delayed: deque[Array] = deque()
         self._delay = round(parameters.torque_delay * parameters.control_rate)
         self._touch = {side: model.sensor(f"{prefix}{side.value}_touch").adr[0] for side in Side}
+        self._wrench = {side: _wrench_rows(model, f"{prefix}{side.value}") for side in Side}
         self._effort = model.jnt_actfrcrange[1:, 1]
         self._control_steps = 0
         data.qpos[:] = qpos_from_configuration(walker.start_configuration)
@@ -124,7 +126,9 @@ class PhysicsBody:
             v[:6] += p.velocity_noise * rng.standard_normal(6)
         if p.joint_rate_noise:
             v[6:] += p.joint_rate_noise * rng.standard_normal(len(v) - 6)
-        return BodyMeasurement(self.time, q, v, loads)
+        # The cells tell what the leg does to the foot; the ground does the opposite, but for the foot's own weight.
+        wrenches = {side: -self._data.sensordata[rows] for side, rows in self._wrench.items()}
+        return BodyMeasurement(self.time, q, v, loads, wrenches)
 
     def _actuated(self, torques: Array) -> Array:
         if self._parameters.torque_noise:
@@ -132,6 +136,12 @@ class PhysicsBody:
             torques = torques + self._parameters.torque_noise * self._effort * noise
         self._delayed.append(torques)
         return self._delayed.popleft() if len(self._delayed) > self._delay else self._delayed[0]
+
+
+def _wrench_rows(model: mujoco.MjModel, foot: str) -> NDArray[np.intp]:
+    """Where the sensors of the force and the torque between a foot and its ankle have their values, (6,)."""
+    first = [int(model.sensor(f"{foot}_{kind}").adr[0]) for kind in ("force", "torque")]
+    return np.concatenate([np.arange(address, address + 3) for address in first])
 
 
 def _make_true(model: mujoco.MjModel, parameters: PhysicsParameters, prefix: str, torso: str) -> None:

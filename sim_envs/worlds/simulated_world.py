@@ -41,7 +41,8 @@ from skills.geometry.lidar import LidarScan
 from skills.geometry.pose import Array, Pose
 from skills.parameters import parameter, parameters
 from skills.walking import RobotError, RobotModel, Walker, WalkerParameters
-from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingStatus
+from skills.walking.control_sample import ControlSample
+from skills.walking.walking_state import RobotState, StepEvent, WalkingStatus
 
 _ROUNDING = 1e-9  # Robot time is a sum of floats; what is due this soon is due now [s].
 
@@ -138,6 +139,11 @@ class SimulatedWorld:
     def model(self) -> mujoco.MjModel:
         """The compiled model, for renderers."""
         return self.physics.model.ptr
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """The robot's joints, in the order of torques and joint positions."""
+        return self._model.joint_names
 
     @property
     def ground(self) -> Ground:

@@ -11,7 +11,8 @@ import numpy as np
 from skills.footsteps.footstep import Footstep
 from skills.geometry.pose import Array, Pose, rotation_z
 from skills.parameters import parameter, parameters
-from skills.walking.walking_state import ControlSample, RobotState, StepEvent, WalkingStatus
+from skills.walking.control_sample import ControlSample
+from skills.walking.walking_state import RobotState, StepEvent, WalkingStatus
 
 
 @parameters

@@ -1,12 +1,12 @@
 """Walking over footsteps: balance, swing and joint motion."""
 
+from skills.walking.control_sample import ControlSample
 from skills.walking.robot_model import RobotError, RobotModel
 from skills.walking.step_adjustment import StepAdjustmentParameters
 from skills.walking.swing_parameters import SwingParameters
 from skills.walking.walker import BodyMeasurement, Walker, WalkerParameters
 from skills.walking.walking_parameters import WalkingParameters
 from skills.walking.walking_state import (
-    ControlSample,
     RobotState,
     StepEvent,
     StepEventKind,

@@ -37,11 +37,13 @@ class QpSolution:
         x: the minimiser, (N,); the best iterate where inaccurate, of no meaning where failed.
         status: how it ended.
         iterations: made by the solver.
+        time: that it took by the solver's own clock, which decides nothing [s].
     """
 
     x: Array
     status: QpStatus
     iterations: int
+    time: float = 0.0
 
 
 class QpSolver(Protocol):
@@ -98,7 +100,7 @@ class OsqpSolver:
         if status is QpStatus.FAILED:
             # Iterates and step size that are no numbers any more would spoil every program to come.
             self._solver = self._fresh_solver()
-        return QpSolution(x, status, int(result.info.iter))
+        return QpSolution(x, status, int(result.info.iter), float(result.info.run_time))
 
     def _fresh_solver(self) -> osqp.OSQP:
         m, n = self._A_mask.T.shape

@@ -18,6 +18,7 @@ from skills.walking.balance import Balance, BalanceCommand
 from skills.walking.body_dynamics import BodyDynamics
 from skills.walking.contact import Contact
 from skills.walking.contact_times import ContactTimes
+from skills.walking.control_sample import ControlSample
 from skills.walking.gait import Gait, toe_points
 from skills.walking.motion_objectives import MotionObjectives
 from skills.walking.posture import standing_configuration
@@ -29,7 +30,6 @@ from skills.walking.transitions import Transitions
 from skills.walking.uniform_spline import minimum_jerk_at
 from skills.walking.walking_parameters import WalkingParameters
 from skills.walking.walking_state import (
-    ControlSample,
     StepEvent,
     StepEventKind,
     WalkingPhase,
@@ -49,12 +49,15 @@ class BodyMeasurement:
         time: robot time [s].
         q, v: configuration (7 + n,) and velocity (6 + n,) in pinocchio's order, as estimated.
         loads: normal force under each sole [N].
+        wrenches_sole: of the ground on each sole in its frame, force first, (6,) [N, N m]; empty where nothing
+            measures them. They are logged and do not enter control.
     """
 
     time: float
     q: Array
     v: Array
     loads: Mapping[Side, float]
+    wrenches_sole: Mapping[Side, Array] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -160,7 +163,7 @@ class Walker:
         tasks = self._objectives.tasks(self._body, balance.com_acceleration, heading, self._contacts)
         command = self._whole_body.solve(self._body, tasks)
         self.qp_failures += command.status is QpStatus.FAILED
-        self._log.append(self._sample(balance, command))
+        self._log.append(self._sample(measured, balance, command))
         return command
 
     def status(self) -> WalkingStatus:
@@ -305,7 +308,7 @@ class Walker:
             self._yaw = wrap_angle(self._yaw_from + share * wrap_angle(gait.landed_stance().yaw - self._yaw_from))
         self._yaw_rate = wrap_angle(self._yaw - before) / dt if dt > 0.0 else 0.0
 
-    def _sample(self, balance: BalanceCommand, command: BodyCommand) -> ControlSample:
+    def _sample(self, measured: BodyMeasurement, balance: BalanceCommand, command: BodyCommand) -> ControlSample:
         body, omega = self._body, self._balance.omega
         dcm = body.com + body.com_velocity / omega
         reference = self._balance.dcm_reference
@@ -315,6 +318,15 @@ class Walker:
             com_world=body.com,
             dcm_world=dcm,
             dcm_reference_world=np.array((reference[0], reference[1], dcm[2])),
-            cop_world=np.array((*balance.cmp, self._gait.stance.mid_feet[2])),
+            cmp_world=np.array((*balance.cmp, self._gait.stance.mid_feet[2])),
             dcm_error=self._balance.dcm_error,
+            angular_momentum_world=body.momentum[3:],
+            stance=Stance(body.sole(Side.LEFT), body.sole(Side.RIGHT)),
+            wrenches_sole=command.wrenches_sole,
+            measured_wrenches_sole=measured.wrenches_sole,
+            torque_shares=command.torques / self._model.effort_limits,
+            support_world=self._gait.support().hull_world,
+            qp_status=command.status,
+            qp_iterations=command.iterations,
+            qp_time=command.solver_time,
         )

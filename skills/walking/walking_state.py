@@ -117,28 +117,3 @@ class StepEvent:
     def moved(self, T: Pose) -> StepEvent:
         """The same event seen from another frame."""
         return replace(self, step=self.step.moved(T), T_world_sole=T @ self.T_world_sole)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ControlSample:
-    """One line of the control-rate log.
-
-    Attributes:
-        time: robot time [s].
-        phase: walking phase.
-        com_world, dcm_world, dcm_reference_world, cop_world: (3,) [m].
-        dcm_error: distance of the DCM from its reference in the plane [m].
-    """
-
-    time: float
-    phase: WalkingPhase
-    com_world: Array
-    dcm_world: Array
-    dcm_reference_world: Array
-    cop_world: Array
-    dcm_error: float
-
-    def moved(self, T: Pose) -> ControlSample:
-        """The same sample seen from another frame."""
-        names = ("com_world", "dcm_world", "dcm_reference_world", "cop_world")
-        return replace(self, **{name: T @ getattr(self, name) for name in names})

@@ -85,6 +85,7 @@ class BodyCommand:
         wrenches_sole: of the ground on each sole in its own frame, force first, (6,) [N, N m].
         status: how the quadratic program ended.
         iterations: of its solver.
+        solver_time: by the solver's own clock [s].
     """
 
     torques: Array
@@ -92,6 +93,7 @@ class BodyCommand:
     wrenches_sole: Mapping[Side, Array]
     status: QpStatus
     iterations: int
+    solver_time: float = 0.0
 
 
 class WholeBodyController:
@@ -143,7 +145,7 @@ class WholeBodyController:
             side: np.zeros(6) if task.contact is None else task.contact.rays_wrench @ (part * self._force_unit)
             for (side, task), part in zip(_in_order(tasks), np.split(rho, 2), strict=True)
         }
-        return BodyCommand(self._torques, acceleration, wrenches, solution.status, solution.iterations)
+        return BodyCommand(self._torques, acceleration, wrenches, solution.status, solution.iterations, solution.time)
 
     def brake(self, body: BodyDynamics) -> BodyCommand:
         """The torques of the tick before, less what brakes the joints: for a tick without a solution."""

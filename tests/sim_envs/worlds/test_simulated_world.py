@@ -239,3 +239,16 @@ def test_a_push_moves_the_dcm_by_its_impulse():
     assert (it.true_state().dcm_world - before)[1] == pytest.approx(30.0 / mass / omega, rel=0.1)
     with pytest.raises(ValueError, match="knows no forces"):
         world().push(np.zeros(3))
+
+
+def test_the_feet_feel_the_forces_that_the_controller_commands():
+    it = SimulatedWorld(world().course, WorldKind.PHYSICS)
+    it.send_footsteps(steps(2))
+    it.advance(2.0)
+    samples = it.drain_log()
+    assert np.median([sample.cop_error for sample in samples]) < 5e-3
+    for side in Side:
+        loads = np.array([(sample.load(side), sample.wrenches_sole[side][2]) for sample in samples])
+        assert np.median(np.abs(loads[:, 0] - loads[:, 1])) < 50.0
+    single = [sample for sample in samples if not all(sample.stands_on(side) for side in Side)]
+    assert len(single) > 100
