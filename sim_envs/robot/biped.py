@@ -32,7 +32,8 @@ class Biped(composer.Entity):
             raise RobotError(f"{description.mjcf_path}: there is no such MJCF file")
         self._mjcf_root = mjcf.from_path(str(description.mjcf_path))
         for side in Side:
-            self._need("sensor", f"{side.value}_touch")
+            for kind in ("touch", "force", "torque"):
+                self._need("sensor", f"{side.value}_{kind}")
             self._need("geom", f"{side.value}_foot_collision")
         self._add_camera()
         self._add_lidar()
