@@ -8,9 +8,19 @@ import numpy as np
 import pytest
 from block_fields import L515, block, camera_pose, look
 
+from skills.footsteps.footstep import Stance
 from skills.geometry import DepthImage, Pose
 from skills.geometry.pose import rotation_about
-from skills.regions import PlanarRegions, extract_regions
+from skills.regions import (
+    MapParameters,
+    MemoryParameters,
+    PlanarRegions,
+    RegionMemory,
+    RegistrationParameters,
+    extract_regions,
+    remember,
+)
+from skills.regions.apparent_motion import ApparentMotion
 from skills.regions.camera_error import NO_ERROR, CameraError
 
 ERROR = CameraError(np.deg2rad((1.2, -0.8, 1.5)), 0.01)
@@ -56,3 +66,26 @@ def test_an_error_less_itself_changes_nothing():
     none = ERROR.less(ERROR)
     np.testing.assert_array_equal(none.vector, NO_ERROR.vector)
     np.testing.assert_array_equal(none.image_corrected(askew).depth, askew.depth)
+
+
+@pytest.mark.parametrize("correct", [True, False])
+def test_a_map_is_put_right_as_soon_as_the_error_is_sure(correct):
+    askew, true = seen_askew()
+    found, wanted = extract_regions(askew), planes(extract_regions(true))
+    stance = Stance(Pose.from_xyz_rpy((0.0, 0.12, 0.0)), Pose.from_xyz_rpy((0.0, -0.12, 0.0)))
+    parameters = MapParameters(MemoryParameters(), RegistrationParameters(correct_camera=correct), 0.26, 0.138)
+    memory = remember(RegionMemory(), found, stance, askew, parameters)
+    assert memory.camera_error is NO_ERROR, "nothing is known of it yet"
+    # As after a walk that has shown the error.
+    information = np.diag(np.full(7, 1e12))
+    estimate = np.concatenate((np.zeros(3), ERROR.vector))
+    assert memory.update is not None
+    drift = replace(memory.update.drift, motion=ApparentMotion(information, information @ estimate, estimate))
+    memory = replace(memory, update=replace(memory.update, drift=drift))
+    for _ in range(2):
+        memory = remember(memory, found, stance, askew, parameters)
+    assert memory.ground is not None
+    seen = [region for region in memory.ground.regions if region.area > 0.2][-2:]
+    error = np.abs(planes(PlanarRegions(tuple(seen), 0.0, 0)) - wanted).max()
+    assert error < 1e-3 if correct else error > 0.01
+    np.testing.assert_allclose(memory.camera_error.vector, ERROR.vector if correct else 0.0, atol=1e-6)
