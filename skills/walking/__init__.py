@@ -4,7 +4,8 @@ from skills.walking.control_sample import ControlSample
 from skills.walking.robot_model import RobotError, RobotModel
 from skills.walking.step_adjustment import StepAdjustmentParameters
 from skills.walking.swing_parameters import SwingParameters
-from skills.walking.walker import BodyMeasurement, Walker, WalkerParameters
+from skills.walking.walker import BodyMeasurement, Walker
+from skills.walking.walker_parameters import WalkerParameters
 from skills.walking.walking_parameters import WalkingParameters
 from skills.walking.walking_state import (
     RobotState,

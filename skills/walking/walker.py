@@ -24,11 +24,10 @@ from skills.walking.motion_objectives import MotionObjectives
 from skills.walking.posture import standing_configuration
 from skills.walking.quadratic_program import MakeSolver, QpStatus
 from skills.walking.robot_model import RobotModel
-from skills.walking.step_adjustment import StepAdjustment, StepAdjustmentParameters, SwingState
-from skills.walking.swing_parameters import SwingParameters
+from skills.walking.step_adjustment import StepAdjustment, SwingState
 from skills.walking.transitions import Transitions
 from skills.walking.uniform_spline import minimum_jerk_at
-from skills.walking.walking_parameters import WalkingParameters
+from skills.walking.walker_parameters import WalkerParameters
 from skills.walking.walking_state import (
     StepEvent,
     StepEventKind,
@@ -36,7 +35,6 @@ from skills.walking.walking_state import (
     WalkingStatus,
 )
 from skills.walking.whole_body_controller import BodyCommand, WholeBodyController
-from skills.walking.whole_body_parameters import WholeBodyParameters
 
 _ROUNDING = 1e-9
 
@@ -58,23 +56,6 @@ class BodyMeasurement:
     v: Array
     loads: Mapping[Side, float]
     wrenches_sole: Mapping[Side, Array] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class WalkerParameters:
-    """All settings of a walker.
-
-    Attributes:
-        walking: phases, balance and posture.
-        swing: the way of a foot through the air.
-        whole_body: weights, gains and limits of the whole body.
-        step_adjustment: how far steps may be changed to save the balance.
-    """
-
-    walking: WalkingParameters = field(default_factory=WalkingParameters)
-    swing: SwingParameters = field(default_factory=SwingParameters)
-    whole_body: WholeBodyParameters = field(default_factory=WholeBodyParameters)
-    step_adjustment: StepAdjustmentParameters = field(default_factory=StepAdjustmentParameters)
 
 
 class Walker:
