@@ -29,6 +29,7 @@ class RunOptions:
         live: file of parameters that is read again whenever it is saved; none where None.
         reload: whether a tree file that is saved meanwhile takes over at the next goal.
         record: recording file to write.
+        film: pictures a second of a film in the recording; none where None.
         faults: file of faults to inject; none where None.
         plans: folder for the log of every footstep plan.
         out: folder for `summary.json`, `trace.jsonl` and `run.json`, from which the run can be replayed.
@@ -48,6 +49,7 @@ class RunOptions:
     live: Path | None = None
     reload: bool = False
     record: Path | None = None
+    film: float | None = None
     faults: Path | None = None
     plans: Path | None = None
     out: Path | None = None

@@ -37,6 +37,7 @@ from skills.parameters import ParameterError
 from skills.walking import WalkingPhase
 
 TICK_RATE = 50.0
+_FILM_MOST = 50.0  # [Hz]
 
 
 def walk(options: RunOptions, *observers: Observer) -> Summary:
@@ -83,7 +84,8 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
     if options.record is not None:
         from lookstep.recording import Recording
 
-        recording = Recording(options.record, world, tree, configuration.robot, _about(options), options.seed)
+        about = _about(options)
+        recording = Recording(options.record, world, tree, configuration.robot, about, options.seed, options.film)
         watching.append(recording)
     plans = None
     if options.plans is not None:
@@ -204,6 +206,8 @@ def _speed(options: RunOptions) -> float | None:
 def _check(options: RunOptions) -> None:
     if options.speed is not None and not options.speed > 0.0:
         raise UserError(f"--speed: got {options.speed}, needs a positive number")
+    if options.film is not None and (options.record is None or not 0.0 < options.film <= _FILM_MOST):
+        raise UserError(f"--film: got {options.film}, needs a rate up to {_FILM_MOST:g} pictures a second and --record")
     if not options.time_limit > 0.0:
         raise UserError(f"--time-limit: got {options.time_limit}, needs a positive number of seconds")
     if options.seed < 0:

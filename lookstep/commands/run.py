@@ -47,6 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--reload", action="store_true", help="a tree file that is saved meanwhile takes over at the next goal (--live)"
     )
     parser.add_argument("--record", type=Path, metavar="RRD", help="write a recording for the rerun viewer")
+    parser.add_argument("--film", type=float, metavar="FPS", help="with a film of so many pictures a second (--record)")
     parser.add_argument("--plans", type=Path, metavar="DIR", help="log every footstep plan with its search here")
     parser.add_argument("--out", type=Path, metavar="DIR", help="write summary.json and trace.jsonl into this folder")
     parser.add_argument("--json", type=Path, metavar="FILE", help="write the summary here as well")
@@ -70,6 +71,7 @@ def execute(options: argparse.Namespace) -> int:
         live=options.live,
         reload=options.reload,
         record=options.record,
+        film=options.film,
         plans=options.plans,
         out=options.out,
     )

@@ -7,8 +7,8 @@ import rerun.blueprint as rrb
 TIMELINE = "robot_time"
 
 
-def default_blueprint(start: tuple[float, float]) -> rrb.Blueprint:
-    """The layout for a walk that starts at (x, y) in the world [m]."""
+def default_blueprint(start: tuple[float, float], film: bool = False) -> rrb.Blueprint:
+    """The layout for a walk that starts at (x, y) in the world [m], with a film beside it where there is one."""
     scene = _scene(
         "Walk",
         ["/world/**", "- /world/around/**"],
@@ -29,6 +29,9 @@ def default_blueprint(start: tuple[float, float]) -> rrb.Blueprint:
             tracking_entity="/world/robot/pelvis",
         ),
     )
+    scenes: list[rrb.View] = [scene, around]
+    if film:
+        scenes.append(rrb.Spatial2DView(name="Film", origin="/film"))
     tree = rrb.Tabs(
         rrb.StateTimelineView(name="Behavior tree", origin="/tree"),
         rrb.StateTimelineView(name="Deadlines", origin="/deadlines"),
@@ -68,7 +71,7 @@ def default_blueprint(start: tuple[float, float]) -> rrb.Blueprint:
     )
     return rrb.Blueprint(
         rrb.Horizontal(
-            rrb.Vertical(rrb.Tabs(scene, around, active_tab=0), tree, row_shares=[3, 2]),
+            rrb.Vertical(rrb.Tabs(*scenes, active_tab=0), tree, row_shares=[3, 2]),
             rrb.Vertical(eyes, control, plots, reasons, row_shares=[3, 3, 2, 2]),
             column_shares=[3, 2],
         ),

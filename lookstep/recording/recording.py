@@ -20,6 +20,7 @@ from lookstep.recording import palette, scene
 from lookstep.recording.blueprint import TIMELINE, default_blueprint
 from lookstep.recording.columns import Columns
 from lookstep.recording.control import ControlViews
+from lookstep.recording.film import Film
 from lookstep.recording.perception import PerceptionViews
 from sim_envs.robot import RobotDescription
 from sim_envs.worlds import SimulatedWorld
@@ -57,18 +58,27 @@ class Recording:
         robot: its table.
         about: a page about the run, Markdown.
         seed: of the run.
+        film: pictures a second of a film from beside the robot; none where None.
     """
 
     def __init__(
-        self, path: Path, world: SimulatedWorld, tree: Tree, robot: RobotDescription, about: str, seed: int
+        self,
+        path: Path,
+        world: SimulatedWorld,
+        tree: Tree,
+        robot: RobotDescription,
+        about: str,
+        seed: int,
+        film: float | None = None,
     ) -> None:
         course = world.course
         self._stream = rr.RecordingStream(_APPLICATION, recording_id=f"{course.name}-{seed}")
-        self._stream.save(path, default_blueprint=default_blueprint(course.start[:2]))
+        self._stream.save(path, default_blueprint=default_blueprint(course.start[:2], film is not None))
         self._course = course
         self._sole = robot.sole_corners_sole
         self._columns = Columns(self._stream)
         self._perception = PerceptionViews(self._stream, self._columns)
+        self._film = None if film is None else Film(self._stream, film)
         self._control = ControlViews(self._stream, self._columns, world.joint_names)
         self._taken: list[tuple[Side, Pose]] = []
         self._seen: dict[str, Any] = {}
@@ -95,6 +105,8 @@ class Recording:
         self._log_tree(moment)
         self._log_timing(moment)
         self._log_steps(moment)
+        if self._film is not None:
+            self._film.log(moment)
         if moment.time >= self._next_flush:
             self._next_flush = moment.time + _FLUSH_PERIOD
             self._flush()

@@ -10,6 +10,7 @@ throws back, and where nothing is seen a plain backdrop takes the shadows that f
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import cv2
 import mujoco
@@ -19,7 +20,7 @@ from numpy.typing import NDArray
 from sim_envs.picture.light import Casters, LightParameters, light_on, sky_directions, sun_directions
 from sim_envs.picture.overlays import Layer, Overlay, project
 from sim_envs.picture.surfaces import FLOOR, Surfaces, floor_under, linear, srgb, surfaces_of, together
-from sim_envs.sensors import geom_mesh, rasterize_faces
+from sim_envs.sensors import GeomMesh, geom_mesh, rasterize_faces
 from skills.geometry.camera import PinholeCamera
 from skills.geometry.pose import Array, Pose
 from skills.parameters import parameter, parameters
@@ -82,7 +83,7 @@ def picture_of(
     """
     style, light = style or PictureStyle(), light or LightParameters()
     fine = camera.scaled(style.samples)
-    mesh = geom_mesh(model, segments=_SEGMENTS)
+    mesh = _mesh_of(model, _SEGMENTS)
     raster = rasterize_faces(mesh, geom_positions, geom_rotations, fine, T_world_camera)
     scene = surfaces_of(model, mesh, raster, geom_positions, geom_rotations, fine, T_world_camera)
     center = np.median(scene.points_world, axis=0).astype(np.float64) if len(scene.pixels) else T_world_camera.p
@@ -93,7 +94,7 @@ def picture_of(
     depths = _depths(surfaces, fine, T_world_camera)
     for overlay, layer in layers:
         _paint(surfaces, depths, overlay, layer)
-    shadow_mesh = geom_mesh(model, segments=_CASTER_SEGMENTS)
+    shadow_mesh = _mesh_of(model, _CASTER_SEGMENTS)
     casters = Casters(shadow_mesh, geom_positions, geom_rotations, center, _reach(scene, center))
     image = _backdrop(fine, style)
     _shade(image, surfaces, casters, T_world_camera, style, light)
@@ -102,6 +103,12 @@ def picture_of(
     _darken_silhouettes(image, depths, style.outline)
     small = cv2.resize(image, (camera.width, camera.height), interpolation=cv2.INTER_AREA)
     return np.round(255 * np.clip(small, 0, 1)).astype(np.uint8)
+
+
+@lru_cache(maxsize=4)
+def _mesh_of(model: mujoco.MjModel, segments: int) -> GeomMesh:
+    """The faces of a model, which stay the same from one picture of a film to the next."""
+    return geom_mesh(model, segments=segments)
 
 
 def _reach(scene: Surfaces, center: Array) -> float:

@@ -9,7 +9,7 @@ import lookstep
 @pytest.fixture(scope="module")
 def chunks(tmp_path_factory):
     path = tmp_path_factory.mktemp("recording") / "walk.rrd"
-    lookstep.run(course="rough", time_limit=2.5, record=path, assignments=("camera.resolution=0.3125",))
+    lookstep.run(course="rough", time_limit=2.5, record=path, film=1.0, assignments=("camera.resolution=0.3125",))
     return list(RrdReader(path).stream().to_chunks())
 
 
@@ -58,6 +58,7 @@ def test_recording_has_timing_control_signals_and_reasons(chunks):
         "/control/torques/legs",
         "/contacts/phase",
         "/world/balance/support",
+        "/film",
         "/deadlines/plan_footsteps",
         "/deadlines/remember_ground",
         "/margins/extract_regions",
