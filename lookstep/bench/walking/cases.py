@@ -91,7 +91,9 @@ def _pushed(name: str, force: float) -> Callable[[int, int | None], Trial]:
     """Every direction in every phase of one step; directions are counted from the way the robot walks to its left."""
 
     def trial(number: int, steps: int | None) -> Trial:
-        return push_trial(name, force, number % _DIRECTIONS, number // _DIRECTIONS % _PHASES, steps)
+        # Staggered, so that a few trials see all phases.
+        phase = (number + number // _DIRECTIONS) % _PHASES
+        return push_trial(name, force, number % _DIRECTIONS, phase, steps)
 
     return trial
 
