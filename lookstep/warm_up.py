@@ -8,6 +8,7 @@ the first time a second process sees to about half of the kernels, and leaves th
 from __future__ import annotations
 
 import dataclasses
+import fcntl
 import gc
 import os
 import shutil
@@ -38,7 +39,12 @@ _COMPILED = "compiled"  # empty file in the cache of kernels: all of them are in
 
 
 def warm_up(configuration: Configuration) -> None:
-    """Run each kernel once with the types that a walk uses."""
+    """Run each kernel once with the types that a walk uses; a run that begins meanwhile waits for its kernels."""
+    with _alone():
+        _run_kernels(configuration)
+
+
+def _run_kernels(configuration: Configuration) -> None:
     course = load_course("flat")
     world = build_world(course, configuration, "kinematic")
     parameters = MapParameters.of(configuration.region_memory, configuration.registration, configuration.footsteps)
@@ -60,6 +66,18 @@ def warm_up(configuration: Configuration) -> None:
     world.send_footsteps(plan.steps)
     world.advance(0.1)
     (kernel_cache() / _COMPILED).touch()
+
+
+@contextmanager
+def _alone() -> Iterator[None]:
+    """Keep other runs from writing the cache at the same time: numba's index takes one writer."""
+    if (kernel_cache() / _COMPILED).exists():
+        yield
+        return
+    kernel_cache().mkdir(parents=True, exist_ok=True)
+    with open(kernel_cache() / "lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 @contextmanager
