@@ -16,6 +16,7 @@ from typing import Protocol
 
 import numpy as np
 import osqp
+from numpy.typing import NDArray
 from scipy import sparse
 
 from skills.geometry.pose import Array, Mask
@@ -71,9 +72,8 @@ class OsqpSolver:
     def __init__(
         self, P_pattern: Mask, A_pattern: Mask, tolerance: float, max_iterations: int, check_every: int
     ) -> None:
-        # Column by column, as OSQP stores them: a transposed mask makes numpy walk in that order.
-        self._P_mask = np.triu(P_pattern).T.copy()
-        self._A_mask = np.ascontiguousarray(A_pattern.T)
+        self._P_pattern, self._A_pattern = np.triu(P_pattern), A_pattern
+        self._P_places, self._A_places = _places(self._P_pattern), _places(A_pattern)
         self._settings = {
             "eps_abs": tolerance,
             "eps_rel": tolerance,
@@ -91,7 +91,7 @@ class OsqpSolver:
 
     def solve(self, P: Array, q: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
         """Solve one program, starting from the solution of the one before."""
-        self._solver.update(Px=P.T[self._P_mask], Ax=A.T[self._A_mask], q=q, l=lower, u=upper)
+        self._solver.update(Px=P.take(self._P_places), Ax=A.take(self._A_places), q=q, l=lower, u=upper)
         result = self._solver.solve(raise_error=False)
         x = np.array(result.x)
         status = _STATUS.get(result.info.status, QpStatus.FAILED)
@@ -103,8 +103,8 @@ class OsqpSolver:
         return QpSolution(x, status, int(result.info.iter), float(result.info.run_time))
 
     def _fresh_solver(self) -> osqp.OSQP:
-        m, n = self._A_mask.T.shape
-        P, A = _with_pattern(self._P_mask.T), _with_pattern(self._A_mask.T)
+        m, n = self._A_pattern.shape
+        P, A = _with_pattern(self._P_pattern), _with_pattern(self._A_pattern)
         solver = osqp.OSQP()
         solver.setup(P, np.zeros(n), A, np.full(m, -1.0), np.full(m, 1.0), **self._settings)
         return solver
@@ -116,6 +116,12 @@ _STATUS = {
     "solved inaccurate": QpStatus.INACCURATE,
     "maximum iterations reached": QpStatus.INACCURATE,
 }
+
+
+def _places(pattern: Mask) -> NDArray[np.intp]:
+    """Where a matrix has its values, column by column as OSQP stores them, counted row by row as numpy does."""
+    columns, rows = np.nonzero(pattern.T)
+    return rows * pattern.shape[1] + columns
 
 
 def _with_pattern(pattern: Mask) -> sparse.csc_matrix:

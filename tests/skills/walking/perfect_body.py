@@ -44,6 +44,7 @@ class PerfectBody:
         command: of the last tick.
         events: all step events so far.
         pressed: feet that something presses from below besides the ground; a test may write it.
+        unfelt: feet that nothing presses, wherever they are; a test may write it.
     """
 
     def __init__(self, model: RobotModel, walker: Walker, ground: Ground) -> None:
@@ -54,6 +55,7 @@ class PerfectBody:
         self.events: list[StepEvent] = []
         self.command: BodyCommand | None = None
         self.pressed: tuple[Side, ...] = ()
+        self.unfelt: tuple[Side, ...] = ()
         self.ticks = 0
         self._supports = walker.supports
 
@@ -107,6 +109,8 @@ class PerfectBody:
         return {side: LOAD * self._is_pressed(side) for side in Side}
 
     def _is_pressed(self, side: Side) -> bool:
+        if side in self.unfelt:
+            return False
         return side in self._supports or side in self.pressed or self._touches(side)
 
     def _touches(self, side: Side) -> bool:

@@ -277,3 +277,24 @@ def test_status_tells_the_phase_its_time_and_the_stance_to_come(make_body: MakeB
     transfer, swing = WalkingPhase.TRANSFER, WalkingPhase.SWING
     assert seen == [transfer, swing, transfer, swing, transfer, WalkingPhase.STANDING]
     assert body.walker.status().last_side is Side.RIGHT
+
+
+def test_a_foot_that_landed_on_nothing_goes_on_sinking_and_lands_once(
+    make_body: MakeBody, make_steps: MakeSteps, stance: Stance
+) -> None:
+    steps = make_steps(2, timing=BRISK)
+    body = make_body(ground_of(poses(stance, steps), lower=0.04))
+    body.send(*steps)
+    body.advance_until(lambda: body.phase is WalkingPhase.SWING)
+    body.advance(0.62)
+    # For a moment something touches the foot above the ground that is 4 cm too low.
+    body.pressed = (Side.LEFT,)
+    body.advance_until(lambda: body.phase is WalkingPhase.TRANSFER, at_most=0.1)
+    height = body.dynamics.sole(Side.LEFT).p[2]
+    body.pressed, body.unfelt = (), (Side.LEFT,)
+    body.advance_until(lambda: body.phase is WalkingPhase.SWING, at_most=0.1)
+    body.unfelt = ()
+    body.advance_until(lambda: body.phase is WalkingPhase.TRANSFER, at_most=1.0)
+    assert body.dynamics.sole(Side.LEFT).p[2] < height - 0.01
+    assert [event.step.sequence_id for event in body.landings()] == [0]
+    assert body.walker.status().failure == ""
