@@ -107,13 +107,6 @@ def plan_from_present(
     return DcmPlan(omega, [half, half, *durations[1:]], [cop, middle, *cop_ends])
 
 
-def advance_exactly(omega: float, com: Array, dcm: Array, cop: Array, duration: float) -> tuple[Array, Array]:
-    """CoM and DCM after a time under a constant CoP, each (2,) [m]."""
-    grow, decay = np.exp(omega * duration), np.exp(-omega * duration)
-    offset = dcm - cop
-    return cop + 0.5 * offset * (grow - decay) + (com - cop) * decay, cop + offset * grow
-
-
 def _weights(omega: float, duration: float) -> tuple[float, float]:
     """Decay of the DCM backward over a piece, and the mean of that decay over it."""
     decay = float(np.exp(-omega * duration))

@@ -85,6 +85,10 @@ class Gait:
         """Nominal time to the end of the phase [s]."""
         return self.swing.remaining if self.swing is not None else max(0.0, self.duration - self.elapsed)
 
+    def stands_on_toe(self, side: Side) -> bool:
+        """Whether a foot is on the ground with its toe alone."""
+        return self.on_toe and self.step is not None and self.step.side is side
+
     def points(self, side: Side) -> Array:
         """Contact points of one foot's foothold, (4, 2) in the sole's plane [m]."""
         return self._points[side]

@@ -30,10 +30,6 @@ class HeelLift:
         pitch = self.pitch * minimum_jerk_at((t - self.start) / self.duration)
         return pitched_about_toe(self.T_world_sole, self.toe, pitch)
 
-    def lifted(self, t: float) -> bool:
-        """Whether only the toe touches the ground."""
-        return self.pitch > 0.0 and t > self.start
-
 
 def pitched_about_toe(T_world_sole: Pose, toe: float, pitch: float) -> Pose:
     """A sole turned about its toe line, heel up [m, rad]."""

@@ -19,7 +19,6 @@ from skills.walking.robot_model import RobotModel
 
 # Rows: CoM x, y, z; pelvis orientation 3; then position 3 and orientation 3 of the left and of the right sole.
 _WEIGHTS = np.array([0.3, 0.3, 0.02] + [0.02] * 3 + ([1.0] * 3 + [0.3] * 3) * 2)
-_ORIENTATION_ROWS = {Side.LEFT: slice(9, 12), Side.RIGHT: slice(15, 18)}
 _DAMPING = 0.01
 _LEAST_DAMPING = 1e-10
 _LONGEST_STEP = 0.3
@@ -33,7 +32,6 @@ class IkSolution:
     Attributes:
         q: configuration, joints within their limits.
         left_error, right_error: distance of the soles from their targets [m].
-        tilt_error: greatest angle of a sole from its target [rad].
         com_error: distance of the CoM from its target in the plane [m].
         height_error: CoM height above its target [m].
         iterations: Newton steps made.
@@ -42,7 +40,6 @@ class IkSolution:
     q: Array
     left_error: float
     right_error: float
-    tilt_error: float
     com_error: float
     height_error: float
     iterations: int
@@ -89,7 +86,6 @@ class InverseKinematics:
             q=q,
             left_error=float(np.linalg.norm(unweighted[6:9])),
             right_error=float(np.linalg.norm(unweighted[12:15])),
-            tilt_error=max(float(np.linalg.norm(unweighted[rows])) for rows in _ORIENTATION_ROWS.values()),
             com_error=float(np.linalg.norm(unweighted[:2])),
             height_error=-float(unweighted[2]),
             iterations=made,

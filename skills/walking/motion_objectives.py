@@ -101,7 +101,7 @@ class MotionObjectives:
         gait = self._gait
         if gait.swing is not None and gait.swing.step.side is side:
             return self._swing_task(body, side, gait.swing)
-        if gait.on_toe and gait.step is not None and gait.step.side is side:
+        if gait.stands_on_toe(side):
             return self._toe_task(body, side, contacts[side])
         return self._stance_task(body, side, contacts[side])
 

@@ -141,15 +141,6 @@ class RobotModel:
             dcm_world=com + data.vcom[0] / omega,
         )
 
-    def com_jacobian(self, q: Array) -> Array:
-        """Derivative of the CoM in the world by the velocity, (3, 6 + n)."""
-        return np.array(pin.jacobianCenterOfMass(self.pin_model, self._data, q))
-
-    def sole_jacobian(self, q: Array, side: Side) -> Array:
-        """Linear and angular velocity of a sole along the world's axes by the velocity, (6, 6 + n)."""
-        frame = self.sole_frames[side]
-        return np.array(pin.computeFrameJacobian(self.pin_model, self._data, q, frame, pin.LOCAL_WORLD_ALIGNED))
-
     def _frame_pose(self, q: Array, frame: int) -> Pose:
         pin.forwardKinematics(self.pin_model, self._data, q)
         placement = pin.updateFramePlacement(self.pin_model, self._data, frame)

@@ -198,8 +198,8 @@ class Walker:
         gait = self._gait
         if gait.phase is WalkingPhase.SWING:
             self._adjust_landing(dt)
-            if self._transitions.has_landed():
-                self._land()
+            if gait.swing is not None and self._transitions.has_landed():
+                self._land(gait.swing.step.side)
         elif gait.phase is WalkingPhase.TRANSFER:
             if self._transitions.landed_on_nothing():
                 gait.take_back_landing()
@@ -247,8 +247,7 @@ class Walker:
         swing.retarget(swing.shift[:2] + share * wanted, landing.pace, dt)
         self._balance.replan_dcm()
 
-    def _land(self) -> None:
-        side = self._gait.swing.step.side if self._gait.swing is not None else Side.LEFT
+    def _land(self, side: Side) -> None:
         T_world_sole = self._body.sole(side)
         self._yaw_from = self._yaw
         again = self._gait.landed_before
@@ -258,9 +257,9 @@ class Walker:
         self._replan()
 
     def _replan(self) -> None:
-        gait, soles = self._gait, {side: self._body.sole(side) for side in Side}
-        if gait.on_toe and gait.step is not None:
-            soles[gait.step.side] = gait.stance.sole(gait.step.side)
+        gait = self._gait
+        # A foot on its toe is pitched; where it will be counted from is where it lay flat.
+        soles = {side: gait.stance.sole(side) if gait.stands_on_toe(side) else self._body.sole(side) for side in Side}
         gait.rest_on(Stance(soles[Side.LEFT], soles[Side.RIGHT]))
         self._contacts = self._touch_ground()
         self._balance.replan(self._body, self._yaw)
@@ -271,8 +270,7 @@ class Walker:
         gait, contacts = self._gait, {}
         for side in self.supports:
             points = gait.points(side)
-            on_toe = gait.on_toe and gait.step is not None and gait.step.side is side
-            loaded = toe_points(points) if on_toe else None
+            loaded = toe_points(points) if gait.stands_on_toe(side) else None
             contacts[side] = Contact.at(points, self._body_parameters.friction, loaded)
         return contacts
 

@@ -1,9 +1,17 @@
 import numpy as np
 import pytest
 
-from skills.walking.dcm_plan import DcmPlan, advance_exactly, plan_from_present
+from skills.geometry.pose import Array
+from skills.walking.dcm_plan import DcmPlan, plan_from_present
 
 OMEGA = 2.96
+
+
+def advance_exactly(omega: float, com: Array, dcm: Array, cop: Array, duration: float) -> tuple[Array, Array]:
+    """CoM and DCM after a time under a constant CoP, each (2,) [m]."""
+    grow, decay = np.exp(omega * duration), np.exp(-omega * duration)
+    offset = dcm - cop
+    return cop + 0.5 * offset * (grow - decay) + (com - cop) * decay, cop + offset * grow
 
 
 def random_plan(seed: int) -> tuple[DcmPlan, list[float], np.ndarray]:

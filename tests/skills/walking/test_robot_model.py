@@ -1,7 +1,6 @@
 from pathlib import Path
 
 import numpy as np
-import pinocchio as pin  # pyright: ignore[reportMissingImports]
 import pytest
 
 from skills.footsteps.footstep import Side
@@ -31,19 +30,6 @@ def test_it_reads_the_robot(model: RobotModel) -> None:
             f"{side.value}_{joint}"
             for joint in ("hip_yaw", "hip_roll", "hip_pitch", "knee", "ankle_pitch", "ankle_roll")
         ]
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_jacobians_are_the_derivatives(model: RobotModel, seed: int) -> None:
-    q, h = random_configuration(model, seed), 1e-6
-    for side in Side:
-        jacobian, com_jacobian = model.sole_jacobian(q, side), model.com_jacobian(q)
-        for k, direction in enumerate(np.eye(model.pin_model.nv)):
-            ahead, behind = (pin.integrate(model.pin_model, q, s * h * direction) for s in (1.0, -1.0))
-            a, b = model.sole_pose(ahead, side), model.sole_pose(behind, side)
-            np.testing.assert_allclose((a.p - b.p) / (2 * h), jacobian[:3, k], atol=1e-7)
-            np.testing.assert_allclose(pin.log3(a.R @ b.R.T) / (2 * h), jacobian[3:, k], atol=1e-7)
-            np.testing.assert_allclose((model.com(ahead) - model.com(behind)) / (2 * h), com_jacobian[:, k], atol=1e-7)
 
 
 @pytest.mark.parametrize("knee", (0.0, 0.5, 1.5, 2.3))
