@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_type_hints
 
+from lookstep.control_health import ControlHealthParameters
 from lookstep.options import DEFAULT_ROBOT
 from sim_envs.judge import JudgeParameters
 from sim_envs.robot import SHIPPED_ROBOTS, RobotDescription
@@ -75,6 +76,7 @@ class Configuration:
     swing: SwingParameters
     whole_body: WholeBodyParameters
     step_adjustment: StepAdjustmentParameters
+    control_health: ControlHealthParameters
     regions: RegionParameters
     region_memory: MemoryParameters
     height_map: HeightMapParameters

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from lookstep.configuration import Configuration
+from lookstep.control_health import ControlHealth
 from lookstep.deadlines import DeadlineAccounts
 from lookstep.moment import Moment
 from lookstep.summary import Figures, PauseCounts, SkillTiming
@@ -37,7 +38,8 @@ _FRAMES_KEPT = 30
 class Statistics:
     """An observer that ends up with the figures of the run."""
 
-    def __init__(self, world: SimulatedWorld, configuration: Configuration) -> None:
+    def __init__(self, world: SimulatedWorld, configuration: Configuration, health: ControlHealth) -> None:
+        self._health = health
         self._course = world.course
         self._sole_size = (configuration.robot.sole_length, configuration.robot.sole_width)
         self._corners_sole = configuration.robot.sole_corners_sole
@@ -101,6 +103,7 @@ class Statistics:
             min_support_fraction=min(self._supports.values(), default=None),
             view_fraction=round(float(np.mean(self._in_view)), 4) if self._in_view else None,
             foothold_error_m=round(float(np.median(self._foothold_errors)), 6) if self._foothold_errors else None,
+            control=self._health.figures(),
         )
 
     def _note_moved_boxes(self, moment: Moment) -> None:

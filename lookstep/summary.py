@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lookstep.control_health import ControlFigures
 from lookstep.deadlines import LeafDeadlines
 from sim_envs.judge import StepCounts
 
@@ -76,6 +77,7 @@ class Figures:
         min_support_fraction: smallest share of a stance sole's area within 1 cm of true ground at mid-stance.
         view_fraction: share of plans whose footholds all lie on regions of the newest depth image.
         foothold_error_m: median distance of a landed sole's centre from its commanded foothold.
+        control: how well the walking controller did.
     """
 
     duration_s: float
@@ -90,6 +92,7 @@ class Figures:
     min_support_fraction: float | None
     view_fraction: float | None
     foothold_error_m: float | None
+    control: ControlFigures
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -17,6 +17,7 @@ from behaviors import Executor, ExecutorMode, OperatorEvent, Robot, SettingError
 from behaviors import Outcome as TreeOutcome
 from behaviors.faults import Fault
 from lookstep.configuration import Assignments, Configuration, load_configuration, split_assignments
+from lookstep.control_health import ControlHealth
 from lookstep.errors import UserError
 from lookstep.faults import break_leaves, faulty_course, faulty_robot, load_faults
 from lookstep.live import LiveParameters
@@ -78,7 +79,8 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
         )
         run_file.write(options.out / RUN_FILE)
     warm_up(configuration)
-    statistics = Statistics(world, configuration)
+    health = ControlHealth(configuration.control_health)
+    statistics = Statistics(world, configuration, health)
     watching: list[Observer] = [statistics, *observers]
     recording = None
     if options.record is not None:
@@ -93,7 +95,7 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
         watching.append(plans)
     try:
         goal = Goal(*(options.goal or course.goal))
-        ending = _loop(world, tree, watching, options, goal, configuration.judge.goal_distance, faults)
+        ending = _loop(world, tree, health, watching, options, goal, configuration.judge.goal_distance, faults)
     finally:
         tree.shutdown()
         if recording is not None:
@@ -116,6 +118,7 @@ class _Ending:
 def _loop(
     world: SimulatedWorld,
     tree: Tree,
+    health: ControlHealth,
     watching: list[Observer],
     options: RunOptions,
     goal: Goal,
@@ -137,7 +140,7 @@ def _loop(
             for watch in watches:
                 watch.poll()
             tree.tick()
-            moment = _moment(world, tree)
+            moment = _moment(world, tree, health)
             for observer in watching:
                 observer.observe(moment)
             outcome, reason = _ending(moment, options.time_limit)
@@ -149,7 +152,8 @@ def _loop(
     return _Ending(outcome, reason, pace.elapsed)
 
 
-def _moment(world: SimulatedWorld, tree: Tree) -> Moment:
+def _moment(world: SimulatedWorld, tree: Tree, health: ControlHealth) -> Moment:
+    samples = world.drain_log()
     return Moment(
         time=world.time,
         world=world,
@@ -157,9 +161,9 @@ def _moment(world: SimulatedWorld, tree: Tree) -> Moment:
         state=world.true_state(),
         status=world.status(),
         events=tree.context.events,
-        samples=world.drain_log(),
+        samples=samples,
         jobs=tree.drain_jobs(),
-        log=tree.drain_log(),
+        log=(*tree.drain_log(), *health.watch(samples)),
     )
 
 

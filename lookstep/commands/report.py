@@ -10,6 +10,7 @@ from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 from rich.table import Table
 
+from lookstep.control_health import ControlFigures
 from lookstep.deadlines import LeafDeadlines
 from lookstep.moment import Moment
 from lookstep.options import RunOptions
@@ -105,8 +106,17 @@ def _rows(summary: Summary) -> list[tuple[str, str]]:
         ("least support", _number(summary.min_support_fraction, " of a sole")),
         ("plans in view", _number(summary.view_fraction)),
         ("foothold error", _number(summary.foothold_error_m and 1e3 * summary.foothold_error_m, " mm")),
+        ("control", _control(summary.control)),
         ("trace", summary.trace_hash),
     ]  # fmt: skip
+
+
+def _control(control: ControlFigures) -> str:
+    cop = "" if control.cop_error_p99_m is None else f", CoP error p99 {1e3 * control.cop_error_p99_m:.0f} mm"
+    return (
+        f"{control.ticks} ticks, {control.qp_failed} without a solution, {control.cop_alarms} CoP alarms{cop}, "
+        f"DCM error up to {1e2 * control.dcm_error_max_m:.1f} cm, torque up to {control.torque_share_max:.0%}"
+    )
 
 
 def _timing(timing: SkillTiming) -> str:

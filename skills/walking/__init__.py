@@ -1,6 +1,7 @@
 """Walking over footsteps: balance, swing and joint motion."""
 
 from skills.walking.control_sample import ControlSample
+from skills.walking.quadratic_program import QpStatus
 from skills.walking.robot_model import RobotError, RobotModel
 from skills.walking.step_adjustment import StepAdjustmentParameters
 from skills.walking.swing_parameters import SwingParameters
@@ -19,6 +20,7 @@ from skills.walking.whole_body_parameters import WholeBodyParameters
 __all__ = [
     "BodyMeasurement",
     "ControlSample",
+    "QpStatus",
     "RobotError",
     "RobotModel",
     "RobotState",
