@@ -7,12 +7,13 @@ robot.
 from py_trees.common import Status
 
 from behaviors.builder import SettingError
-from behaviors.context import Context, Fault, LogLine, OperatorEvent
+from behaviors.context import Context, Fault, LogLine
 from behaviors.drawing import DrawnLine, draw, drawn_lines
 from behaviors.executor import Executor, ExecutorMode, JobOutcome, JobRecord
 from behaviors.leaf import Call, Leaf, SkillLeaf, SkillParameters
 from behaviors.loader import check, known_leaves, load_tree, parse_tree
 from behaviors.node import Node
+from behaviors.operator import OperatorEvent, OperatorInbox
 from behaviors.ports import Input, OptionalInput, Output
 from behaviors.registry import RegistrationError, Registry, leaf
 from behaviors.robot import Robot, World
@@ -35,6 +36,7 @@ __all__ = [
     "Node",
     "NodeSpec",
     "OperatorEvent",
+    "OperatorInbox",
     "OptionalInput",
     "Outcome",
     "Output",

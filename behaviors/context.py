@@ -3,25 +3,14 @@
 from __future__ import annotations
 
 import traceback
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any
 
 from behaviors.executor import Executor
+from behaviors.operator import OperatorEvent, PauseWalk, ResetBehavior, ResumeWalk
 from behaviors.robot_view import RobotView
 from skills.walking.walking_state import StepEvent
-
-
-@dataclass(frozen=True, slots=True)
-class OperatorEvent:
-    """Something a person did, or a program in a person's place.
-
-    Attributes:
-        name: what was done, such as "approve" or "goal".
-        value: what belongs to it; None where nothing does.
-    """
-
-    name: str
-    value: Any = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +68,7 @@ class Context:
         executor: computes for leaves that take long.
         parameters: parameters of the skills by subject, such as `parameters["footsteps"]`.
         operator_events: what the operator did since the last tick.
+        paused: whether the operator has paused the walk, and neither resumed nor reset it.
         log_lines: lines since the recorder took them last.
         faults: exceptions so far.
     """
@@ -90,13 +80,29 @@ class Context:
         self.time = robot.time
         self.tick = 0
         self.operator_events: tuple[OperatorEvent, ...] = ()
+        self.paused = False
         self.log_lines: list[LogLine] = []
         self.faults: list[Fault] = []
+        self._made: Counter[str] = Counter()
 
     @property
     def events(self) -> tuple[StepEvent, ...]:
         """Step events since the last tick, oldest first; every leaf sees the same."""
         return self.robot.events
+
+    def take(self, events: tuple[OperatorEvent, ...]) -> None:
+        """Show the leaves what the operator did."""
+        self.operator_events = events
+        for event in events:
+            if isinstance(event, PauseWalk):
+                self.paused = True
+            elif isinstance(event, ResumeWalk | ResetBehavior):
+                self.paused = False
+
+    def new_id(self, kind: str) -> int:
+        """The next id of a kind of things, from 0; no two things of a kind share one, whichever leaf makes them."""
+        self._made[kind] += 1
+        return self._made[kind] - 1
 
     def log(self, text: str, *, path: str = "", level: str = "info") -> None:
         """Write one line for the operator."""

@@ -43,8 +43,8 @@ class RecordedTick:
         status, reason, ticked: by node path; whether this tick visited the node.
         ports: hash of every value by key; None where there is none.
         values: as JSON, by key, of the values that are written out.
-        line: what happened in this tick: `commands`, `corrections`, `events`, `operator`, `parameters`, `delivered`,
-            and the `ports` and `values` that changed.
+        line: what happened in this tick: `commands`, `corrections`, `events`, `operator`, `inputs`, `parameters`,
+            `delivered`, and the `ports` and `values` that changed.
         taken_over: path and texts of the tree that took over before this tick; None where none did.
     """
 

@@ -16,8 +16,8 @@ from py_trees.common import Status
 
 from behaviors.blackboard import Slot
 from behaviors.canonical import DIGEST_BYTES, digest, encode
-from behaviors.context import OperatorEvent
 from behaviors.node import Node
+from behaviors.operator import OperatorEvent
 from behaviors.robot_view import RobotView
 from behaviors.trace_file import TraceFile
 
@@ -57,11 +57,13 @@ class Happened:
     Attributes:
         operator: what the operator did.
         changes: parameters that were changed.
+        inputs: values that were given to the tree from outside, by key.
         delivered: nodes whose computations ended, in order.
     """
 
     operator: tuple[OperatorEvent, ...] = ()
     changes: tuple[ParameterChange, ...] = ()
+    inputs: tuple[tuple[str, Any], ...] = ()
     delivered: tuple[str, ...] = ()
 
 
@@ -111,9 +113,9 @@ class Trace:
         self._primed.clear()
         state = self._digest("state of the robot", robot.state()) + self._digest("status of the robot", robot.status())
         update(state)
-        if robot.commands or robot.events or happened.operator or happened.changes:
+        if robot.commands or robot.events or happened.operator or happened.changes or happened.inputs:
             commands = tuple((command.name, command.steps) for command in robot.commands)
-            update(encode((commands, robot.events, happened.operator, happened.changes)))
+            update(encode((commands, robot.events, happened.operator, happened.changes, happened.inputs)))
         if self._file is not None:
             head = {"tick": tick, "time": time, "hash": self.hash, "robot": blake2b(state, digest_size=8).hexdigest()}
             self._file.write(head, nodes, slots, ports, robot, happened)

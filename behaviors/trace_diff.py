@@ -17,7 +17,7 @@ class Difference:
     """One thing that two ticks do not share.
 
     Attributes:
-        what: "status", "port", "command", "operator", "parameters" or "robot".
+        what: "status", "port", "command", "operator", "parameters", "input" or "robot".
         subject: the node, key or name that differs.
         first, second: what it is in either trace.
     """
@@ -125,7 +125,8 @@ def compare_ticks(one: RecordedTick, other: RecordedTick, common: Common) -> Ite
         if before != after:
             reasons = (one.reason.get(path, ""), other.reason.get(path, ""))
             yield Difference("status", path, _with_reason(before, reasons[0]), _with_reason(after, reasons[1]))
-    for what, name in (("commands", "command"), ("operator", "operator"), ("parameters", "parameters")):
+    happened = {"commands": "command", "operator": "operator", "parameters": "parameters", "inputs": "input"}
+    for what, name in happened.items():
         told = tuple([_without_node(entry) for entry in tick.happened(what)] for tick in (one, other))
         if told[0] != told[1]:
             yield Difference(name, "to the robot" if name == "command" else "event", *map(_tell, told))

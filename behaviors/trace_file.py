@@ -91,7 +91,8 @@ class TraceFile:
             "commands": [_command(command) for command in robot.commands],
             "corrections": [{"node": node, "value": to_json(pose)} for node, pose in robot.corrections],
             "events": [{"kind": event.kind.value, "step": event.step.sequence_id} for event in robot.events],
-            "operator": [{"name": event.name, "value": to_json(event.value)} for event in happened.operator],
+            "operator": [{"name": event.name, "value": event.value} for event in happened.operator],
+            "inputs": [{"key": key, "value": to_json(value)} for key, value in happened.inputs],
             "parameters": [
                 {"target": change.target, "key": change.key, "value": to_json(change.value)}
                 for change in happened.changes

@@ -12,6 +12,7 @@ tree.shutdown()
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any
@@ -20,16 +21,19 @@ from py_trees.common import Status
 
 from behaviors.blackboard import Blackboard
 from behaviors.builder import Layers, SettingError, Settings, build_node, replaced
-from behaviors.context import Context, Fault, LogLine, NodeFaultError, OperatorEvent
+from behaviors.context import Context, Fault, LogLine, NodeFaultError
 from behaviors.executor import Executor, JobRecord
 from behaviors.leaf import LeafNode
 from behaviors.node import Node
+from behaviors.operator import OperatorEvent, OperatorInbox, StopNow
+from behaviors.operator.parameter_events import parameter_change
 from behaviors.robot import Robot
 from behaviors.robot_view import RobotView
 from behaviors.safe_stop import SafeStop
 from behaviors.spec import TreeSpec
 from behaviors.timetable import Timetable
 from behaviors.trace import Happened, ParameterChange, Trace
+from skills.parameters import ParameterError
 from strict_yaml import nearest
 
 DEFAULT_RATE = 50.0
@@ -42,6 +46,7 @@ class Outcome(Enum):
     SUCCESS = "success"
     FAILURE = "failure"
     ERROR = "error"
+    STOPPED = "stopped"
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +77,7 @@ class Tree:
         outcome: how the run stands.
         reason: why it ended; empty while it runs.
         trace: hash and file of the run.
+        inbox: takes events of the operator from any thread; the next tick takes them out.
         layers: where the parameters of nodes come from.
         transitions: statuses that the last tick changed, in the order of `nodes`.
         timetable: when ticks are due, and how late the last one was.
@@ -85,9 +91,11 @@ class Tree:
         rate: float = DEFAULT_RATE,
         executor: Executor | None = None,
         parameters: dict[str, Any] | None = None,
+        fixed: Collection[str] = (),
         defaults: Settings | None = None,
         settings: Settings | None = None,
         trace: Trace | None = None,
+        inbox: OperatorInbox | None = None,
     ) -> None:
         """Build the nodes; nothing is ticked yet.
 
@@ -97,9 +105,11 @@ class Tree:
             rate: ticks per second of robot time [1/s].
             executor: computes for the leaves; one in lockstep where None.
             parameters: of the skills, by subject.
+            fixed: subjects that are taken when a run begins, so that a later change would have no effect.
             defaults: parameters of nodes by kind, below those that the file gives.
             settings: parameters of nodes by path, above those that the file gives.
             trace: takes the ticks; one without a file where None.
+            inbox: takes events of the operator; one of its own where None.
 
         Raises:
             SettingError: where settings name a node or parameter that is not there.
@@ -108,10 +118,12 @@ class Tree:
         self.timetable = Timetable(rate)
         self.context = Context(RobotView(robot), executor or Executor(), dict(parameters or {}))
         self.trace = trace or Trace()
+        self.inbox = inbox or OperatorInbox()
+        self._fixed = fixed
         self.transitions: tuple[Transition, ...] = ()
         self._delivered: tuple[str, ...] = ()
         self._pending_inputs: list[tuple[str, Any]] = []
-        self._pending_events: list[OperatorEvent] = []
+        self._inputs: tuple[tuple[str, Any], ...] = ()
         self._changes: list[ParameterChange] = []
         self._ticks = 0
         self._build(spec, Layers(defaults or {}, settings or {}))
@@ -158,7 +170,7 @@ class Tree:
     @property
     def pending_events(self) -> tuple[OperatorEvent, ...]:
         """What the operator did that the next tick will see."""
-        return tuple(self._pending_events)
+        return self.inbox.waiting
 
     @property
     def next_tick_time(self) -> float:
@@ -191,11 +203,10 @@ class Tree:
             raise SettingError(f'tree "{self.spec.name}" has no input "{key}"{nearest(key, self.spec.inputs)}')
         self.blackboard.slot(key, None).check(value)
         self._pending_inputs.append((key, value))
-        self._pending_events.append(OperatorEvent(key, value))
 
     def send(self, event: OperatorEvent) -> None:
-        """Show an operator's event to the leaves at the next tick."""
-        self._pending_events.append(event)
+        """Let an operator's event take effect at the next tick; from any thread."""
+        self.inbox.put(event)
 
     def set_parameter(self, target: str, key: str, value: Any) -> None:
         """Change one parameter between two ticks.
@@ -206,10 +217,12 @@ class Tree:
             value: what it shall be.
 
         Raises:
-            SettingError: where target or key are unknown.
+            SettingError: where target or key are unknown, or cannot change while the robot walks.
             ParameterError: where the value is out of range.
         """
         subjects = self.context.parameters
+        if target in self._fixed:
+            raise SettingError(f"{target} is taken when a run begins; it cannot change while the robot walks")
         if target in subjects:
             subjects[target] = replaced(subjects[target], {key: value}, target)
         elif target in self._nodes_by_path:
@@ -237,12 +250,15 @@ class Tree:
             self._begin_tick()
             self.setup()
             if self.outcome is Outcome.RUNNING and not self.context.faults:
-                self.root.tick_once()
+                if any(isinstance(event, StopNow) for event in self.context.operator_events):
+                    self._end(Outcome.STOPPED, "stopped by the operator")
+                else:
+                    self.root.tick_once()
         except NodeFaultError:
             pass
         except Exception as error:
             self.context.record_fault(f"/{self.spec.name}", "tick", error)
-        if self.outcome is Outcome.ERROR:
+        if self.outcome in (Outcome.ERROR, Outcome.STOPPED):
             self._stop.tick()
         elif self.outcome is Outcome.RUNNING:
             self._conclude()
@@ -270,12 +286,12 @@ class Tree:
         context = self.context
         context.tick = self._ticks
         self._ticks += 1
-        context.operator_events, self._pending_events = tuple(self._pending_events), []
         context.robot.begin_tick()
         context.time = context.robot.time
         self.timetable.tick_at(context.time)
-        inputs, self._pending_inputs = self._pending_inputs, []
-        for key, value in inputs:
+        self._take_events()
+        self._inputs, self._pending_inputs = tuple(self._pending_inputs), []
+        for key, value in self._inputs:
             self.blackboard.slot(key, None).write(value)
         delivered = context.executor.deliver(context.time)
         self._delivered = tuple(job.path for job in delivered)
@@ -283,12 +299,29 @@ class Tree:
             if job.digest is not None:
                 self.trace.prime(job.result, job.digest)
 
+    def _take_events(self) -> None:
+        """What came from the operator: changes of parameters are made, and the rest is shown to the leaves."""
+        shown = []
+        for event in self.inbox.drain(self.context.time):
+            change = parameter_change(event)
+            if change is None:
+                shown.append(event)
+                continue
+            try:
+                self.set_parameter(*change)
+            except (SettingError, ParameterError) as error:
+                self.context.log(f'"{event.name}" is refused: {error}', level="warning")
+        self.context.take(tuple(shown))
+
+    def _end(self, outcome: Outcome, reason: str) -> None:
+        """Stop what runs, for another reason than that the root is done."""
+        self.outcome, self.reason = outcome, reason
+        self.root.stop(Status.INVALID)
+
     def _conclude(self) -> None:
         """End the run where the root is done, or where anything raised in this tick."""
         if self.context.faults:
-            self.outcome = Outcome.ERROR
-            self.reason = str(self.context.faults[0])
-            self.root.stop(Status.INVALID)
+            self._end(Outcome.ERROR, str(self.context.faults[0]))
             self._stop.tick()
         elif self.root.status is not Status.RUNNING:
             self.outcome = Outcome.SUCCESS if self.root.status is Status.SUCCESS else Outcome.FAILURE
@@ -306,7 +339,7 @@ class Tree:
     def _record_trace(self) -> None:
         changes, self._changes = tuple(self._changes), []
         context = self.context
-        happened = Happened(context.operator_events, changes, self._delivered)
+        happened = Happened(context.operator_events, changes, self._inputs, self._delivered)
         try:
             if not self._is_traced:
                 self._is_traced = True

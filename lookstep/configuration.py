@@ -116,6 +116,11 @@ class Assignments:
 
 
 SUBJECTS: Mapping[str, type] = get_type_hints(Configuration)
+# Those that are taken when a run begins: of the simulated world, and of what is under way since then.
+FIXED_SUBJECTS = (
+    *("robot", "camera", "noise", "lidar", "lidar_noise", "world", "physics", "kinematic", "drift", "falls", "judge"),
+    *("walking", "swing", "whole_body", "height_map"),
+)
 
 
 def load_configuration(

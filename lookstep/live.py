@@ -2,13 +2,14 @@
 
 ```yaml
 carrot: [1.5, 0.2, 0.0]
-approve: 12
+approve: [footsteps, 12]
+pause: 1
 footsteps.reach: 0.4
 /look_and_step/walk/sequence/walk_to/follow_path/selector/go_on/take_a_step/wait_for_swing.fraction: 0.4
 ```
 
-A key without a dot is an event, sent whenever its value changes; three numbers are a place, x, y and yaw. All takes
-effect between two ticks and is part of the trace.
+A key without a dot is an event of the operator (docs/operator.md), sent whenever its value changes; one that has no
+value takes any, so that another number sends it again. All takes effect between two ticks and is part of the trace.
 """
 
 from __future__ import annotations
@@ -16,16 +17,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from behaviors import OperatorEvent, SettingError, Tree
-from skills.body_path import Goal
+from behaviors import SettingError, Tree
+from behaviors.operator import EVENTS, OperatorEvent, OperatorEventError, read_event
 from skills.parameters import ParameterError
 from strict_yaml import Kind, Node, Problem, YamlError, load_document
-
-# Parameters that are taken when a run begins: of the simulated world, and of maps that are under way.
-FIXED = (
-    *("robot", "camera", "noise", "lidar", "lidar_noise", "world", "physics", "kinematic", "drift", "falls", "judge"),
-    *("walking", "swing", "whole_body", "height_map"),
-)
 
 
 class LiveParameters:
@@ -68,31 +63,26 @@ class LiveParameters:
             value = _value(entry.node)
             if self._applied.get(entry.key) == value:
                 continue
-            if "." not in entry.key:
-                self._applied[entry.key] = value
-                self._tree.send(OperatorEvent(entry.key, _place(value)))
-                continue
             target, _, key = entry.key.rpartition(".")
-            if target in FIXED:
-                message = f"{target} is taken when a run begins; it cannot change while the robot walks"
-                self._say(Problem(entry.location, message))
-                continue
             try:
-                self._tree.set_parameter(target, key, value)
-            except (SettingError, ParameterError) as error:
+                if target:
+                    self._tree.set_parameter(target, key, value)
+                else:
+                    self._tree.send(_event(key, value))
+            except (OperatorEventError, SettingError, ParameterError) as error:
                 self._say(Problem(entry.node.location, str(error)))
                 continue
             self._applied[entry.key] = value
-            self._tree.context.log(f"{entry.key} is {value} now", path=target if target.startswith("/") else "")
+            if target:
+                self._tree.context.log(f"{entry.key} is {value} now", path=target if target.startswith("/") else "")
 
     def _say(self, problem: Problem) -> None:
         self._tree.context.log(str(problem), level="warning")
 
 
-def _place(value: Any) -> Any:
-    """Three numbers as a goal."""
-    is_place = isinstance(value, tuple) and len(value) == 3 and all(isinstance(part, int | float) for part in value)
-    return Goal(*map(float, value)) if is_place else value
+def _event(name: str, value: Any) -> OperatorEvent:
+    has_value = name not in EVENTS or EVENTS[name].form != OperatorEvent.form
+    return read_event(name, value if has_value else None)
 
 
 def _value(node: Node) -> Any:

@@ -14,9 +14,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from behaviors import Executor, ExecutorMode, OperatorEvent, SettingError, Trace, Tree, TreeSpec, load_tree
+from behaviors import Executor, ExecutorMode, SettingError, Trace, Tree, TreeSpec, load_tree
 from behaviors.following_robot import FollowingRobot
 from behaviors.leaf import LeafNode
+from behaviors.operator import read_event
 from behaviors.played_leaf import Playback, play_back
 from behaviors.ports import declared_inputs
 from behaviors.recorded_executor import RecordedExecutor
@@ -24,7 +25,7 @@ from behaviors.recorded_trace import RecordedTick, RecordedTrace, TraceError
 from behaviors.trace_diff import TraceDiff, diff_traces
 from behaviors.trace_file import LARGEST_VALUE
 from behaviors.values import from_json
-from lookstep.configuration import Configuration, split_assignments, with_assignments
+from lookstep.configuration import FIXED_SUBJECTS, Configuration, split_assignments, with_assignments
 from lookstep.errors import UserError
 from lookstep.faults import break_leaves, faulty_robot
 from lookstep.run_file import TRACE_FILE, RunFile
@@ -135,6 +136,7 @@ def _tree(
             rate=trace.rate,
             executor=executor,
             parameters=configuration.by_subject(),
+            fixed=FIXED_SUBJECTS,
             settings=settings,
             trace=Trace(file),
         )
@@ -202,11 +204,9 @@ def _drive(
 def _apply(tree: Tree, tick: RecordedTick, fixed: set[tuple[str, str]]) -> None:
     """Let happen what came from outside, apart from changes of what is set otherwise now."""
     for event in tick.happened("operator"):
-        value = from_json(event["value"])
-        if event["name"] in tree.spec.inputs:
-            tree.set_input(event["name"], value)
-        else:
-            tree.send(OperatorEvent(event["name"], value))
+        tree.send(read_event(event["name"], event["value"]))
+    for given in tick.happened("inputs"):
+        tree.set_input(given["key"], from_json(given["value"]))
     for change in tick.happened("parameters"):
         if (change["target"], change["key"]) not in fixed:
             try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from behaviors import SettingError, Tree, load_tree
+from behaviors.operator import SendGoal
 from lookstep.errors import UserError
 from skills.parameters import ParameterError
 from strict_yaml import YamlError
@@ -26,7 +27,7 @@ class TreeReload:
 
     def poll(self) -> None:
         """For between two ticks: take over where a goal has come and the files have changed."""
-        if not any(event.name == "goal" for event in self._tree.pending_events):
+        if not any(isinstance(event, SendGoal) for event in self._tree.pending_events):
             return
         spec = self._tree.spec
         try:

@@ -13,10 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from behaviors import Executor, ExecutorMode, OperatorEvent, Robot, SettingError, Trace, Tree, TreeSpec, load_tree
+from behaviors import Executor, ExecutorMode, OperatorInbox, Robot, SettingError, Trace, Tree, TreeSpec, load_tree
 from behaviors import Outcome as TreeOutcome
 from behaviors.faults import Fault
-from lookstep.configuration import Assignments, Configuration, load_configuration, split_assignments
+from behaviors.operator import SendGoal
+from lookstep.configuration import FIXED_SUBJECTS, Assignments, Configuration, load_configuration, split_assignments
 from lookstep.control_health import ControlHealth
 from lookstep.errors import UserError
 from lookstep.faults import break_leaves, faulty_course, faulty_robot, load_faults
@@ -41,12 +42,13 @@ TICK_RATE = 50.0
 _FILM_MOST = 50.0  # [Hz]
 
 
-def walk(options: RunOptions, *observers: Observer) -> Summary:
+def walk(options: RunOptions, *observers: Observer, inbox: OperatorInbox | None = None) -> Summary:
     """Walk once.
 
     Args:
         options: what to run.
         observers: watch besides recording and statistics.
+        inbox: takes events of the operator, from any thread.
 
     Raises:
         YamlError, UserError: where the input is not usable; nothing has been written then.
@@ -59,7 +61,7 @@ def walk(options: RunOptions, *observers: Observer) -> Summary:
     faults = () if options.faults is None else load_faults(options.faults, course)
     course = faulty_course(course, faults)
     world = build_world(course, configuration, options.world, options.seed)
-    tree = _tree(spec, faulty_robot(world, faults), configuration, assignments, options)
+    tree = _tree(spec, faulty_robot(world, faults), configuration, assignments, options, inbox)
     break_leaves(tree, faults)
     # From here on the input is known to be good.
     for folder in filter(None, (options.out, options.plans, options.record and options.record.parent)):
@@ -131,7 +133,7 @@ def _loop(
         watches.append(LiveParameters(options.live, tree))
     if options.reload:
         watches.append(TreeReload(tree, lambda reloaded: break_leaves(reloaded, faults)))
-    tree.send(OperatorEvent("goal", goal))
+    tree.send(SendGoal(goal))
     outcome, reason = None, ""
     try:
         while outcome is None:
@@ -176,7 +178,7 @@ def _ending(moment: Moment, time_limit: float) -> tuple[Outcome | None, str]:
         return Outcome.FELL, moment.status.failure
     if tree.outcome is TreeOutcome.SUCCESS:
         return Outcome.GOAL_REACHED, "the robot stands at the goal"
-    if tree.outcome is TreeOutcome.FAILURE:
+    if tree.outcome in (TreeOutcome.FAILURE, TreeOutcome.STOPPED):
         return Outcome.STOPPED, tree.reason
     if moment.time >= time_limit:
         return Outcome.TIMEOUT, f"{time_limit:g} s are over; last: {tree.root.reason or 'walking'}"
@@ -229,7 +231,12 @@ def _course(options: RunOptions, course_options: Mapping[str, Any]) -> Course:
 
 
 def _tree(
-    spec: TreeSpec, robot: Robot, configuration: Configuration, assignments: Assignments, options: RunOptions
+    spec: TreeSpec,
+    robot: Robot,
+    configuration: Configuration,
+    assignments: Assignments,
+    options: RunOptions,
+    inbox: OperatorInbox | None,
 ) -> Tree:
     executor = Executor(ExecutorMode(options.executor))
     try:
@@ -239,7 +246,9 @@ def _tree(
             rate=TICK_RATE,
             executor=executor,
             parameters=configuration.by_subject(),
+            fixed=FIXED_SUBJECTS,
             settings=assignments.nodes,
+            inbox=inbox,
         )
     except (SettingError, ParameterError) as error:
         executor.shutdown()

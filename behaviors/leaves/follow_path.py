@@ -6,6 +6,7 @@ import numpy as np
 from py_trees.common import Status
 
 from behaviors.leaf import Call, Leaf, SkillLeaf
+from behaviors.operator import SendGoal
 from behaviors.ports import Input, Output
 from behaviors.registry import leaf
 from skills.body_path import BodyPath, Goal, SubGoal, goal_reached, straight_path, sub_goal
@@ -25,7 +26,7 @@ class WaitForGoal(Leaf):
 
     def tick(self) -> Status:
         """SUCCESS when a goal arrives."""
-        goals = [event.value for event in self.context.operator_events if event.name == "goal"]
+        goals = [event.goal for event in self.context.operator_events if isinstance(event, SendGoal)]
         if not goals:
             return self.running("waits for a goal")
         status = self.context.robot.status()
@@ -49,7 +50,7 @@ class PlanBodyPath(SkillLeaf):
         """From where the feet will stand."""
         stance = self.context.robot.status().imminent_stance
         start = np.array((stance.mid_feet[0], stance.mid_feet[1], stance.yaw))
-        return self.call(straight_path, start, self.goal.xyyaw_world)
+        return self.call(straight_path, start, self.goal.xyyaw_world, self.context.new_id("path"))
 
     def receive(self, result: BodyPath) -> Status:
         """Hand the path on."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from py_trees.common import Status
 
 from behaviors.leaf import Leaf
+from behaviors.operator import MoveCarrot
 from behaviors.ports import Output
 from behaviors.registry import leaf
 from skills.body_path import Goal
@@ -48,8 +49,8 @@ class WatchCarrot(Leaf):
         self.goal = None
 
     def tick(self) -> Status:
-        """RUNNING; each event "carrot" moves it."""
-        carrots = [event.value for event in self.context.operator_events if event.name == "carrot"]
+        """RUNNING; each event of the operator moves it."""
+        carrots = [event.goal for event in self.context.operator_events if isinstance(event, MoveCarrot)]
         if carrots:
             self.goal = carrots[-1]
         carrot = self.goal

@@ -35,10 +35,6 @@ class PlanFootsteps(SkillLeaf):
     sub_goal = Input(SubGoal, "where the next steps should lead")
     plan = Output(FootstepPlan, "the next footsteps")
 
-    def setup(self) -> None:
-        """No plan has been made yet."""
-        self._plans = 0
-
     def request(self) -> Call | Status:
         """From the imminent stance with the other foot first; with either foot when the robot stands."""
         status = self.context.robot.status()
@@ -48,13 +44,12 @@ class PlanFootsteps(SkillLeaf):
             sub_goal=self.sub_goal,
             stance=status.imminent_stance,
             first_side=None if standing or status.last_side is None else status.last_side.opposite,
-            plan_id=self._plans,
+            plan_id=self.context.new_id("plan"),
             first_sequence_id=status.last_sequence_id + 1,
             reference=None if standing else self._not_begun(status),
             footsteps=self.context.parameters["footsteps"],
             terrain=self.context.parameters["terrain"],
         )
-        self._plans += 1
         alarm = self.context.executor.alarm(self.parameters.search_time)
         timed = () if alarm is None else (alarm,)
         return self.call(plan_on_request, request, *timed, deadline=self._deadline(status))

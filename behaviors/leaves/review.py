@@ -5,6 +5,7 @@ from __future__ import annotations
 from py_trees.common import Status
 
 from behaviors.leaf import Leaf
+from behaviors.operator import Approve, Reject
 from behaviors.ports import Input
 from behaviors.registry import leaf
 from skills.footsteps import FootstepPlan
@@ -34,9 +35,9 @@ class ReviewPlan(Leaf):
         """SUCCESS when approved, or where nobody wants to be asked."""
         plan_id = self.plan.plan_id
         for event in self.context.operator_events:
-            if event.name == "approve" and event.value == plan_id:
+            if event == Approve("footsteps", plan_id):
                 return self.succeeded(f"plan {plan_id} is approved")
-            if event.name == "reject" and event.value == plan_id:
+            if event == Reject("footsteps", plan_id):
                 return self.failed(f"plan {plan_id} is rejected by the operator")
         if self.parameters.automatic:
             return self.succeeded("goes on without review")

@@ -15,10 +15,12 @@ class BodyPath:
 
     Attributes:
         waypoints_world: (N >= 2, 3) rows of x, y [m] and heading yaw [rad].
+        path_id: unique over a run.
         arc_lengths: distance from the start along the path to each waypoint, (N,) [m]; made from the waypoints.
     """
 
     waypoints_world: Array
+    path_id: int = 0
     arc_lengths: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:

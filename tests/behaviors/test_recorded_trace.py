@@ -7,8 +7,9 @@ from pathlib import Path
 import pytest
 from scripted import make, run
 
-from behaviors import OperatorEvent, Trace
+from behaviors import Trace
 from behaviors.explanation import explain
+from behaviors.operator import Approve
 from behaviors.recorded_trace import RecordedTrace, TraceError
 from behaviors.trace_diff import diff_traces
 
@@ -31,14 +32,14 @@ def test_the_state_after_every_tick_is_read_back(tmp_path: Path):
         "Scripted: {says: R}]}}",
         4,
         tmp_path,
-        act=lambda tree, tick: tree.send(OperatorEvent("approve", 1.5)) if tick == 2 else None,
+        act=lambda tree, tick: tree.send(Approve("footsteps", 15)) if tick == 2 else None,
     )
     ticks = list(trace.ticks())
     assert [tick.tick for tick in ticks] == [0, 1, 2, 3] and len(trace) == 4
     assert [tick.status["/t/scripted"] for tick in ticks] == ["RUNNING", "SUCCESS", "SUCCESS", "SUCCESS"]
     assert [tick.ticked["/t/scripted"] for tick in ticks] == [True, True, False, False]
     assert [tick.values.get("number") for tick in ticks] == [None, 3.0, 3.0, 3.0]
-    assert ticks[2].happened("operator") == [{"name": "approve", "value": 1.5}]
+    assert ticks[2].happened("operator") == [{"name": "approve", "value": ["footsteps", 15]}]
     assert trace.nodes["/t/give_number"].parameters == {"value": 3.0}
     assert trace.at(0.05).tick == 2
 

@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 from scripted import calls, leaf_of, make, run, toys
 
-from behaviors import OperatorEvent, Outcome, Trace, parse_tree
+from behaviors import Outcome, Trace, parse_tree
+from behaviors.operator import SendGoal
 from behaviors.recorded_trace import RecordedTrace
+from skills.body_path import Goal
 from skills.parameters import ParameterError
 
 FIRST = "{tree: t, root: {sequence: [GiveNumber: {out: [number]}, Scripted: {says: R}]}}"
@@ -21,7 +23,7 @@ def test_what_runs_is_stopped_once_and_the_new_tree_begins(tmp_path: Path):
     tree.trace = Trace(tmp_path / "trace.jsonl")
     run(tree, robot, 3)
     old = leaf_of(tree, "/t/scripted")
-    tree.send(OperatorEvent("goal"))
+    tree.send(SendGoal(Goal(1.0, 2.0, 0.5)))
     tree.reload(parse_tree(SECOND, toys))
     run(tree, robot, 2)
     assert old.calls.count("stop") == 1  # type: ignore[attr-defined]
@@ -34,7 +36,7 @@ def test_what_runs_is_stopped_once_and_the_new_tree_begins(tmp_path: Path):
     assert [tick.tick for tick in ticks] == [0, 1, 2, 3, 4] and len(trace) == 5
     assert [tick.taken_over is not None for tick in ticks] == [False, False, False, True, False]
     assert "/t/scripted" in ticks[2].status and "/t/scripted" not in ticks[3].status
-    assert ticks[3].happened("operator") == [{"name": "goal", "value": None}]
+    assert ticks[3].happened("operator") == [{"name": "goal", "value": [1.0, 2.0, 0.5]}]
     assert set(trace.nodes) == {"/t", "/t/give_number", "/t/scripted", "/t/add_one", "/t/last"}
 
 

@@ -16,8 +16,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scripted import Scripted, ScriptedRobot, footstep, leaf_of, make, run, toys
 
-from behaviors import Executor, Leaf, OperatorEvent, Outcome, Output, Registry, Status, Trace, Tree, parse_tree
+from behaviors import Executor, Leaf, Outcome, Output, Registry, Status, Trace, Tree, parse_tree
 from behaviors.canonical import CanonicalError, digest, encode
+from behaviors.operator import Approve, Reject
 from behaviors.values import ValueFormatError, from_json, is_small, to_json
 from skills.footsteps.footstep import FootstepPlan, PlanOutcome
 from skills.geometry.pose import Pose
@@ -81,8 +82,9 @@ def test_statuses_events_commands_parameters_and_the_robots_state_change_the_has
     moved.pose = Pose.from_xyz_rpy((1e-12, 0.0, 0.0))
     hashes.append(trace_of(base, robot=moved))
     for act in (
-        lambda tree: tree.send(OperatorEvent("approve")),
-        lambda tree: tree.send(OperatorEvent("approve", 1.0)),
+        lambda tree: tree.send(Approve("footsteps", 0)),
+        lambda tree: tree.send(Approve("footsteps", 1)),
+        lambda tree: tree.send(Reject("footsteps", 0)),
         lambda tree: tree.set_parameter("/t", "says", "RRRS"),
         lambda tree: tree.context.robot.robot.__setattr__("time", 1e-12),
     ):
@@ -119,7 +121,7 @@ def test_the_file_has_one_line_a_tick_with_what_changed(tmp_path: Path):
     robot = ScriptedRobot()
     text = "{tree: t, root: {sequence: [Scripted: {says: RS}, GiveSteps: {out: [plan]}]}}"
     tree = Tree(parse_tree(text, STEPS), robot, trace=Trace(tmp_path / "trace.jsonl"))
-    tree.send(OperatorEvent("approve"))
+    tree.send(Approve("footsteps", 3))
     run(tree, robot, 3)
     tree.shutdown()
     head, first, second, third = map(json.loads, (tmp_path / "trace.jsonl").read_text().splitlines())
@@ -131,7 +133,7 @@ def test_the_file_has_one_line_a_tick_with_what_changed(tmp_path: Path):
     assert head["nodes"][2]["out"] == {"plan": "plan"} and head["keys"] == {"plan": "FootstepPlan"}
     assert first["status"] == {"/t": "RUNNING", "/t/scripted": "RUNNING", "/t/give_steps": "INVALID"}
     assert first["reason"]["/t/scripted"] == "said R"
-    assert first["operator"] == [{"name": "approve", "value": None}]
+    assert first["operator"] == [{"name": "approve", "value": ["footsteps", 3]}]
     assert second["status"] == {"/t/scripted": "SUCCESS", "/t/give_steps": "RUNNING"}
     assert list(second["ports"]) == ["plan"]
     assert from_json(second["values"]["plan"]).steps[1].sequence_id == 1

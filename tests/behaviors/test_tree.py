@@ -8,8 +8,9 @@ import py_trees
 import pytest
 from scripted import ScriptedRobot, calls, leaf_of, make, run
 
-from behaviors import OperatorEvent, Outcome, SettingError, Status
+from behaviors import Outcome, SettingError, Status
 from behaviors.blackboard import PortTypeError
+from behaviors.operator import Approve
 from skills.parameters import ParameterError
 
 NUMBER = "{tree: t, ports: {in: {number: float}}, root: {AddOne: {in: [number], out: [sum]}}}"
@@ -80,9 +81,9 @@ def test_an_output_of_the_wrong_type_is_a_fault(monkeypatch: pytest.MonkeyPatch)
 
 def test_operator_events_are_seen_for_one_tick():
     tree, robot = make("{tree: t, root: {Scripted: {says: R}}}")
-    tree.send(OperatorEvent("approve"))
+    tree.send(Approve("footsteps", 3))
     run(tree, robot, 1)
-    assert tree.context.operator_events == (OperatorEvent("approve"),)
+    assert tree.context.operator_events == (Approve("footsteps", 3),)
     run(tree, robot, 1)
     assert tree.context.operator_events == ()
 

@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 
-from behaviors import OperatorEvent, Outcome, Status, draw, load_tree
+from behaviors import Outcome, Status, draw, load_tree
 from behaviors.interchange import read_written, write_yaml
+from behaviors.operator import Approve, MoveCarrot, Reject
 from lookstep.options import RunOptions
 from lookstep.walk import walk
 from skills.body_path import Goal
@@ -57,16 +58,16 @@ def test_follow_carrot_goes_where_the_operator_leads_and_waits_for_approval():
     def lead(tree, time: float) -> None:
         review = tree.node("/follow_carrot/parallel/follow/sequence/review_plan")
         if time == pytest.approx(0.1):
-            tree.send(OperatorEvent("carrot", Goal(0.6, 0.0, 0.0)))
+            tree.send(MoveCarrot(Goal(0.6, 0.0, 0.0)))
         if time == pytest.approx(4.0):
-            tree.send(OperatorEvent("carrot", Goal(1.2, 0.0, 0.0)))
+            tree.send(MoveCarrot(Goal(1.2, 0.0, 0.0)))
             tree.set_parameter(review.path, "automatic", True)
         if review.status is Status.RUNNING and time > 1.0 and review.reason.startswith("waits for approval"):
             plan_id = tree.blackboard["plan"].plan_id
             if plan_id not in approvals:
                 approvals.append(plan_id)
-                tree.send(OperatorEvent("reject" if plan_id == 0 else "approve", plan_id))
-                tree.send(OperatorEvent("approve", plan_id - 1))
+                tree.send(Reject("footsteps", 0) if plan_id == 0 else Approve("footsteps", plan_id))
+                tree.send(Approve("footsteps", plan_id + 1))
 
     person = Person(lead)
     options = RunOptions(tree="follow_carrot", assignments=(SMALL_CAMERA,), time_limit=8.0, **FAST)

@@ -57,7 +57,7 @@ def test_saved_parameters_are_applied_between_ticks_recorded_and_replayed(tmp_pa
     assert any("expected" in text or "could not find" in text for text in warnings)
     assert any(text.startswith("1:18: footsteps.reach: got 9") and "0.1 .. 1 m" in text for text in warnings)
     assert any(text.startswith('2:18: footsteps: no parameter "reech"; did you mean "reach"?') for text in warnings)
-    assert "3:1: walking is taken when a run begins; it cannot change while the robot walks" in warnings
+    assert "3:24: walking is taken when a run begins; it cannot change while the robot walks" in warnings
     assert any(text.startswith('4:13: no node or subject "/nothing"') for text in warnings)
     diff = replay(tmp_path / "out", ReplayOptions()).diff
     assert diff.identical and summary.trace_hash == lines[-1]["hash"]

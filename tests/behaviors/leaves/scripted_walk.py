@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from behaviors import OperatorEvent, Status, Tree, parse_tree
+from behaviors import Status, Tree, parse_tree
+from behaviors.operator import SendGoal
 from skills.body_path import BodyPath, Goal, SubGoalParameters, straight_path
 from skills.footsteps import (
     Footstep,
@@ -166,9 +167,9 @@ def path(length: float = 4.0) -> BodyPath:
     return straight_path(np.zeros(3), np.array((length, 0.0, 0.0)))
 
 
-def goal(x: float = 4.0) -> OperatorEvent:
+def goal(x: float = 4.0) -> SendGoal:
     """The operator sends the robot straight ahead."""
-    return OperatorEvent("goal", Goal(x, 0.0, 0.0))
+    return SendGoal(Goal(x, 0.0, 0.0))
 
 
 def tree_of(leaf: str, robot: WalkingRobot, **inputs: Any) -> Tree:

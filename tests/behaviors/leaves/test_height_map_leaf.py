@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 from scripted_walk import PARAMETERS, WalkingRobot, feet_at, goal, status_and_reason, tick
 
-from behaviors import JobOutcome, OperatorEvent, Status, Tree, parse_tree
+from behaviors import JobOutcome, Status, Tree, parse_tree
 from behaviors.leaves import height_map
+from behaviors.operator import SendGoal
 from skills.body_path import Goal
 from skills.height_map import HeightMap, HeightMapper
 
@@ -83,7 +84,7 @@ def test_the_map_lies_around_the_feet_and_then_on_the_way_to_the_goal(tree, robo
     robot.stand(x=2.0)
     take_scan(tree, robot, 0)
     assert tree.blackboard["height_map"].origin_world.tolist() == pytest.approx([-3.0, -5.0])
-    tree.send(OperatorEvent("goal", Goal(6.0, 0.0, 0.0)))
+    tree.send(SendGoal(Goal(6.0, 0.0, 0.0)))
     tick(tree)
     take_scan(tree, robot, 1)
     assert tree.blackboard["height_map"].origin_world.tolist() == pytest.approx([-1.0, -5.0])
