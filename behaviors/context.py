@@ -8,7 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from behaviors.executor import Executor
-from behaviors.operator import OperatorEvent, PauseWalk, ResetBehavior, ResumeWalk
+from behaviors.halt import Halt
+from behaviors.operator import OperatorEvent, PauseWalk, ResetBehavior, ResumeWalk, ReviewRequest
 from behaviors.robot_view import RobotView
 from skills.walking.walking_state import StepEvent
 
@@ -69,6 +70,8 @@ class Context:
         parameters: parameters of the skills by subject, such as `parameters["footsteps"]`.
         operator_events: what the operator did since the last tick.
         paused: whether the operator has paused the walk, and neither resumed nor reset it.
+        halts: why the robot is held, as leaves have said in this tick.
+        reviews: what waits for the operator's decision, as checkpoints have said in this tick.
         log_lines: lines since the recorder took them last.
         faults: exceptions so far.
     """
@@ -81,6 +84,8 @@ class Context:
         self.tick = 0
         self.operator_events: tuple[OperatorEvent, ...] = ()
         self.paused = False
+        self.halts: list[Halt] = []
+        self.reviews: list[ReviewRequest] = []
         self.log_lines: list[LogLine] = []
         self.faults: list[Fault] = []
         self._made: Counter[str] = Counter()
@@ -90,9 +95,10 @@ class Context:
         """Step events since the last tick, oldest first; every leaf sees the same."""
         return self.robot.events
 
-    def take(self, events: tuple[OperatorEvent, ...]) -> None:
-        """Show the leaves what the operator did."""
+    def begin_tick(self, events: tuple[OperatorEvent, ...]) -> None:
+        """Show the leaves what the operator did; what held the robot in the last tick holds it no longer."""
         self.operator_events = events
+        self.halts, self.reviews = [], []
         for event in events:
             if isinstance(event, PauseWalk):
                 self.paused = True

@@ -16,6 +16,7 @@ from py_trees.common import Status
 from behaviors.blackboard import Slot
 from behaviors.context import Context
 from behaviors.executor import Job
+from behaviors.halt import Halt, HaltCause
 from behaviors.node import Node, NoParameters
 from behaviors.ports import declared_inputs, declared_outputs
 from skills.parameters import parameter, parameters
@@ -79,6 +80,12 @@ class Leaf:
         """FAILURE, and why."""
         self.reason = reason
         return Status.FAILURE
+
+    def halted(self, cause: HaltCause, reason: str, status: Status = Status.RUNNING) -> Status:
+        """A status with which the robot is held, and why; for the operator and the judge."""
+        self.context.halts.append(Halt(cause, reason, self.node_path))
+        self.reason = reason
+        return status
 
     def log(self, text: str, *, level: str = "info") -> None:
         """Write one line for the operator under the leaf's path."""

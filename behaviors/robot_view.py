@@ -14,7 +14,7 @@ from skills.footsteps.footstep import Footstep
 from skills.geometry.camera import DepthImage
 from skills.geometry.lidar import LidarScan
 from skills.geometry.pose import IDENTITY, Pose
-from skills.walking.walking_state import RobotState, StepEvent, WalkingStatus
+from skills.walking.walking_state import RobotState, StepEvent, WalkingPhase, WalkingStatus
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,6 +118,12 @@ class RobotView:
         """Finish the current step, then stand; queued steps are dropped."""
         self.commands.append(Command("pause_walking", self.caller))
         self.robot.pause_walking()
+
+    def hold(self) -> None:
+        """Let a robot that walks, or is about to, finish its step and stand."""
+        status = self.status()
+        if status.phase is not WalkingPhase.STANDING or status.queue:
+            self.pause_walking()
 
     @property
     def _corrected(self) -> bool:

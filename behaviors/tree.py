@@ -311,7 +311,7 @@ class Tree:
                 self.set_parameter(*change)
             except (SettingError, ParameterError) as error:
                 self.context.log(f'"{event.name}" is refused: {error}', level="warning")
-        self.context.take(tuple(shown))
+        self.context.begin_tick(tuple(shown))
 
     def _end(self, outcome: Outcome, reason: str) -> None:
         """Stop what runs, for another reason than that the root is done."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, get_type_hints
 
+from behaviors.operator import ReviewParameters
 from lookstep.control_health import ControlHealthParameters
 from lookstep.options import DEFAULT_ROBOT
 from sim_envs.judge import JudgeParameters
@@ -84,6 +85,7 @@ class Configuration:
     sub_goal: SubGoalParameters
     footsteps: FootstepParameters
     terrain: TerrainParameters
+    review: ReviewParameters
 
     @property
     def walker(self) -> WalkerParameters:

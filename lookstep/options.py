@@ -30,6 +30,7 @@ class RunOptions:
         reload: whether a tree file that is saved meanwhile takes over at the next goal.
         record: recording file to write.
         film: pictures a second of a film in the recording; none where None.
+        review: whether checkpoints ask the operator, who must be there to answer.
         faults: file of faults to inject; none where None.
         plans: folder for the log of every footstep plan.
         out: folder for `summary.json`, `trace.jsonl` and `run.json`, from which the run can be replayed.
@@ -50,6 +51,7 @@ class RunOptions:
     reload: bool = False
     record: Path | None = None
     film: float | None = None
+    review: bool = False
     faults: Path | None = None
     plans: Path | None = None
     out: Path | None = None

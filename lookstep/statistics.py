@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from behaviors.halt import HaltCause
 from lookstep.configuration import Configuration
 from lookstep.control_health import ControlHealth
 from lookstep.deadlines import DeadlineAccounts
@@ -124,7 +125,17 @@ class Statistics:
         overdue = status.phase is WalkingPhase.TRANSFER and status.phase_elapsed > status.phase_duration + 1e-6
         last = self._last_plan
         arrived = last is not None and last.outcome is PlanOutcome.GOAL_REACHED and status.current_step is None
-        self._phases.append(PhaseSample(moment.time, status.phase, transfer_overdue=overdue, goal_active=not arrived))
+        causes = {halt.cause for halt in moment.tree.context.halts}
+        self._phases.append(
+            PhaseSample(
+                moment.time,
+                status.phase,
+                transfer_overdue=overdue,
+                goal_active=not arrived,
+                blocked=HaltCause.BLOCKED in causes,
+                in_review=HaltCause.REVIEW in causes,
+            )
+        )
 
     def _note_step(self, event: StepEvent) -> None:
         step = event.step

@@ -16,7 +16,7 @@ import numpy as np
 from behaviors import Executor, ExecutorMode, OperatorInbox, Robot, SettingError, Trace, Tree, TreeSpec, load_tree
 from behaviors import Outcome as TreeOutcome
 from behaviors.faults import Fault
-from behaviors.operator import SendGoal
+from behaviors.operator import ReviewParameters, SendGoal
 from lookstep.configuration import FIXED_SUBJECTS, Assignments, Configuration, load_configuration, split_assignments
 from lookstep.control_health import ControlHealth
 from lookstep.errors import UserError
@@ -55,7 +55,7 @@ def walk(options: RunOptions, *observers: Observer, inbox: OperatorInbox | None 
     """
     _check(options)
     assignments = split_assignments(options.assignments)
-    configuration = load_configuration(options.preset, assignments.subjects, options.robot)
+    configuration = load_configuration(options.preset, (*_review(options), *assignments.subjects), options.robot)
     spec = load_tree(tree_path(options.tree))
     course = _course(options, assignments.course)
     faults = () if options.faults is None else load_faults(options.faults, course)
@@ -221,6 +221,13 @@ def _check(options: RunOptions) -> None:
     for name, folder in (("out", options.out), ("plans", options.plans)):
         if folder is not None and folder.exists() and not folder.is_dir():
             raise UserError(f"--{name} {folder}: is a file, needs a folder")
+
+
+def _review(options: RunOptions) -> tuple[str, ...]:
+    """Checkpoints ask by default, as on a robot; in a simulated run only where somebody is there to answer."""
+    return (
+        () if options.review else tuple(f"review.{field.name}=false" for field in dataclasses.fields(ReviewParameters))
+    )
 
 
 def _course(options: RunOptions, course_options: Mapping[str, Any]) -> Course:

@@ -6,7 +6,7 @@ from behaviors.leaves.guards import GroundFresh, RobotFallen
 from behaviors.leaves.height_map import UpdateHeightMap
 from behaviors.leaves.look import ExtractRegions, RememberGround
 from behaviors.leaves.plan_steps import PlanFootsteps
-from behaviors.leaves.review import ReviewPlan
+from behaviors.leaves.review import ReviewBodyPath, ReviewFootsteps
 from behaviors.leaves.walk import PauseWalking, SendFootsteps, WaitForSwing, WaitUntilStanding
 
 __all__ = [
@@ -19,7 +19,8 @@ __all__ = [
     "PlanBodyPath",
     "PlanFootsteps",
     "RememberGround",
-    "ReviewPlan",
+    "ReviewBodyPath",
+    "ReviewFootsteps",
     "RobotFallen",
     "SendFootsteps",
     "UpdateHeightMap",

@@ -14,6 +14,7 @@ from behaviors.operator.events import (
 )
 from behaviors.operator.inbox import OperatorInbox
 from behaviors.operator.parameter_events import ChangeParameter, SwitchImpassability, SwitchReview
+from behaviors.operator.review import ReviewParameters, ReviewRequest
 
 __all__ = [
     "EVENTS",
@@ -27,6 +28,8 @@ __all__ = [
     "Reject",
     "ResetBehavior",
     "ResumeWalk",
+    "ReviewParameters",
+    "ReviewRequest",
     "SendGoal",
     "SendWaypoints",
     "StopNow",

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import TracebackType
 
 from rich.console import Console
@@ -44,6 +46,15 @@ class Progress:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self._bar.stop()
+
+    @contextmanager
+    def aside(self) -> Iterator[None]:
+        """Take the bar away while the terminal is used otherwise."""
+        self._bar.stop()
+        try:
+            yield
+        finally:
+            self._bar.start()
 
     def observe(self, moment: Moment) -> None:
         """Move the bar."""

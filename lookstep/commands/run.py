@@ -36,6 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="KEY=VALUE",
         help="one parameter: subject.key=value, course.option=value or /node/path.key=value; may be repeated",
     )
+    parser.add_argument("--review", action="store_true", help="ask in the terminal before paths and plans are walked")
     parser.add_argument("--faults", type=Path, metavar="FILE", help="inject the faults that a YAML file lists")
     parser.add_argument(
         "--live",
@@ -67,6 +68,7 @@ def execute(options: argparse.Namespace) -> int:
         robot=options.robot,
         preset=options.preset,
         assignments=tuple(options.assignments),
+        review=options.review,
         faults=options.faults,
         live=options.live,
         reload=options.reload,
@@ -77,13 +79,17 @@ def execute(options: argparse.Namespace) -> int:
     )
     if options.json is not None and not options.json.parent.is_dir():
         raise UserError(f"--json {options.json}: the folder {options.json.parent} does not exist")
+    if options.review and options.executor != EXECUTORS[0]:
+        raise UserError(f"--review: the robot's clock waits for the operator, which needs --executor {EXECUTORS[0]}")
     # Loading the simulation takes seconds; whoever asks for help need not wait for it.
     from lookstep.commands.report import Progress, print_summary
+    from lookstep.commands.terminal_review import TerminalReview
     from lookstep.summary import Outcome
     from lookstep.walk import walk
 
     with Progress() as progress:
-        summary = walk(run_options, progress)
+        observers = [progress, TerminalReview(input, print, progress.aside)] if options.review else [progress]
+        summary = walk(run_options, *observers)
     print_summary(summary, run_options)
     if options.json is not None:
         summary.write(options.json)

@@ -10,7 +10,7 @@ import pytest
 
 from behaviors import Outcome, Status, draw, load_tree
 from behaviors.interchange import read_written, write_yaml
-from behaviors.operator import Approve, MoveCarrot, Reject
+from behaviors.operator import Approve, MoveCarrot, Reject, SwitchReview
 from lookstep.options import RunOptions
 from lookstep.walk import walk
 from skills.body_path import Goal
@@ -56,21 +56,19 @@ def test_follow_carrot_goes_where_the_operator_leads_and_waits_for_approval():
     approvals: list[int] = []
 
     def lead(tree, time: float) -> None:
-        review = tree.node("/follow_carrot/parallel/follow/sequence/review_plan")
         if time == pytest.approx(0.1):
             tree.send(MoveCarrot(Goal(0.6, 0.0, 0.0)))
         if time == pytest.approx(4.0):
             tree.send(MoveCarrot(Goal(1.2, 0.0, 0.0)))
-            tree.set_parameter(review.path, "automatic", True)
-        if review.status is Status.RUNNING and time > 1.0 and review.reason.startswith("waits for approval"):
-            plan_id = tree.blackboard["plan"].plan_id
-            if plan_id not in approvals:
-                approvals.append(plan_id)
-                tree.send(Reject("footsteps", 0) if plan_id == 0 else Approve("footsteps", plan_id))
-                tree.send(Approve("footsteps", plan_id + 1))
+            tree.send(SwitchReview("footsteps", asks=False))
+        for request in tree.context.reviews:
+            if time > 1.0 and request.item_id not in approvals:
+                approvals.append(request.item_id)
+                tree.send((Reject if request.item_id == 0 else Approve)("footsteps", request.item_id))
+                tree.send(Approve("footsteps", request.item_id + 1))
 
     person = Person(lead)
-    options = RunOptions(tree="follow_carrot", assignments=(SMALL_CAMERA,), time_limit=8.0, **FAST)
+    options = RunOptions(tree="follow_carrot", assignments=(SMALL_CAMERA,), time_limit=8.0, review=True, **FAST)
     summary = walk(options, person)
     assert person.outcome is Outcome.RUNNING
     assert "plan 0 is rejected by the operator" in person.reasons and "plan 1 is approved" in person.reasons

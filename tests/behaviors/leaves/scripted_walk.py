@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from behaviors import Status, Tree, parse_tree
-from behaviors.operator import SendGoal
+from behaviors.operator import ReviewParameters, SendGoal
 from skills.body_path import BodyPath, Goal, SubGoalParameters, straight_path
 from skills.footsteps import (
     Footstep,
@@ -35,6 +35,7 @@ PARAMETERS: Mapping[str, Any] = {
     "sub_goal": SubGoalParameters(),
     "footsteps": FootstepParameters(),
     "terrain": TerrainParameters(),
+    "review": ReviewParameters(body_path=False, footsteps=False),
 }
 _LIDAR = SpinningLidar(3, 4, 0.5, -0.5)
 _CAMERA = PinholeCamera(4, 3, 2.0, 2.0, 1.5, 1.0)
@@ -162,9 +163,9 @@ def ground(time: float = 0.0) -> PlanarRegions:
     return PlanarRegions((PlanarRegion(Pose.identity(), hull, (hull,), 1.0, time),), time, 0)
 
 
-def path(length: float = 4.0) -> BodyPath:
+def path(length: float = 4.0, path_id: int = 0) -> BodyPath:
     """Straight ahead from the origin."""
-    return straight_path(np.zeros(3), np.array((length, 0.0, 0.0)))
+    return straight_path(np.zeros(3), np.array((length, 0.0, 0.0)), path_id)
 
 
 def goal(x: float = 4.0) -> SendGoal:
