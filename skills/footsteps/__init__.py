@@ -4,8 +4,8 @@ from skills.footsteps.footstep import Footstep, FootstepPlan, PlanOutcome, Side,
 from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
 from skills.footsteps.footstep_planner import plan_footsteps, plan_from_stance, terrain_ahead
 from skills.footsteps.plan_request import PlanRequest, plan_on_request
-from skills.footsteps.planned_steps import whole_sole
 from skills.footsteps.search_log import SearchLog
+from skills.footsteps.supported_polygon import whole_sole
 from skills.footsteps.swing_clearance import SwingClearance, swing_clearance
 from skills.footsteps.terrain import Foothold, RegionTerrain, Terrain, region_terrain
 from skills.footsteps.whole_way import plan_whole_way, stand_on

@@ -11,8 +11,10 @@ from skills.footsteps.footstep_parameters import FootstepParameters
 from skills.footsteps.terrain import Terrain
 from skills.geometry.polygon import clip_half_plane, contains_point
 from skills.geometry.pose import Array, Pose
+from skills.kernels import kernel
 
 _MOST_CORNERS = 8
+_SHORTEST = 1e-6  # edges shorter than this have no direction [m]
 _NOWHERE = np.zeros((0, 2))
 
 
@@ -29,23 +31,29 @@ def landing_region(terrain: Terrain, T_world_sole: Pose, parameters: FootstepPar
     for part in region.convex_parts_region:
         outline = part @ T_sole_region.R[:2, :2].T + T_sole_region.p[:2]
         if contains_point(outline, 0.0, 0.0):
-            return _shrunk(outline, parameters)
+            half_length, half_width = 0.5 * parameters.sole_length, 0.5 * parameters.sole_width
+            return _shrunk(outline, parameters.landing_move, half_length, half_width, parameters.landing_margin)
     return _NOWHERE
 
 
-def _shrunk(outline: Array, parameters: FootstepParameters) -> Array:
-    move = parameters.landing_move
-    places = move * np.array(((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))
-    half = 0.5 * np.array((parameters.sole_length, parameters.sole_width))
-    for corner, span in zip(outline, np.roll(outline, -1, axis=0) - outline, strict=True):
-        length = float(np.hypot(span[0], span[1]))
-        if length < 1e-6 or not len(places):
+@kernel
+def _shrunk(outline: Array, move: float, half_length: float, half_width: float, margin: float) -> Array:
+    """Places within a square about the origin where a sole of these half sizes keeps a margin inside an outline."""
+    places = np.array(((-move, -move), (move, -move), (move, move), (-move, move)))
+    for i in range(outline.shape[0]):
+        j = i + 1 if i + 1 < outline.shape[0] else 0
+        dx, dy = outline[j, 0] - outline[i, 0], outline[j, 1] - outline[i, 1]
+        length = np.sqrt(dx * dx + dy * dy)
+        if length < _SHORTEST or places.shape[0] == 0:
             continue
-        a, b = span[1] / length, -span[0] / length
-        reach = abs(a) * half[0] + abs(b) * half[1] + parameters.landing_margin
-        places = clip_half_plane(places, float(a), float(b), float(a * corner[0] + b * corner[1] - reach))
-    if not len(places) or not contains_point(places, 0.0, 0.0):
-        return _NOWHERE
+        a, b = dy / length, -dx / length
+        reach = abs(a) * half_length + abs(b) * half_width + margin
+        places = clip_half_plane(places, a, b, a * outline[i, 0] + b * outline[i, 1] - reach)
+    if places.shape[0] == 0 or not contains_point(places, 0.0, 0.0):
+        return np.empty((0, 2))
     # Fewer corners of a convex polygon lie within it.
-    chosen = np.unique(np.linspace(0, len(places) - 1, min(len(places), _MOST_CORNERS)).astype(int))
-    return places[chosen]
+    count = min(places.shape[0], _MOST_CORNERS)
+    fewer = np.empty((count, 2))
+    for k in range(count):
+        fewer[k] = places[k * (places.shape[0] - 1) // (count - 1)]
+    return fewer

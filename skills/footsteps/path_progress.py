@@ -63,13 +63,13 @@ def _judge_by_field(
         # Between two footholds there may be no ground under the body.
         to_go, way = look_up(limits, field, x, y, z)
     remaining = np.sqrt((body_x - path[last, 0]) ** 2 + (body_y - path[last, 1]) ** 2)
-    turn = abs(_wrap(yaw - path[last, 2]))
+    turn = abs(wrapped(yaw - path[last, 2]))
     level = abs(z - goal.z) <= limits.goal_height_tolerance
     off, turned = remaining / limits.goal_tolerance, turn / limits.goal_yaw_tolerance
     node.arrived = level and off <= _LOOSE and turned <= _LOOSE
     if (level and remaining < limits.final_turn) or np.isnan(way):
         way = path[last, 2]
-    node.off_path_cost = limits.yaw_cost * abs(_wrap(yaw - way))
+    node.off_path_cost = limits.yaw_cost * abs(wrapped(yaw - way))
     spared = limits.step_cost * limits.goal_tolerance / limits.stride
     turns = limits.step_cost * (turn - limits.goal_yaw_tolerance) / limits.turn
     node.left = max(to_go - spared, turns, 0.0)
@@ -98,9 +98,9 @@ def _judge_by_path(
         if off < nearest:
             nearest = off
             arc_length = path[i, 3] + t * (path[i + 1, 3] - path[i, 3])
-            off_heading = _wrap(yaw - path[i, 2] - min(max(t, 0.0), 1.0) * _wrap(path[i + 1, 2] - path[i, 2]))
+            off_heading = wrapped(yaw - path[i, 2] - min(max(t, 0.0), 1.0) * wrapped(path[i + 1, 2] - path[i, 2]))
     off_path = np.sqrt(nearest)
-    turn = abs(_wrap(yaw - path[last, 2]))
+    turn = abs(wrapped(yaw - path[last, 2]))
     if goal.final:
         near, aligned = limits.goal_tolerance, limits.goal_yaw_tolerance
         remaining = np.sqrt((body_x - path[last, 0]) ** 2 + (body_y - path[last, 1]) ** 2)
@@ -116,5 +116,6 @@ def _judge_by_path(
 
 
 @kernel
-def _wrap(angle: float) -> float:
+def wrapped(angle: float) -> float:
+    """The same angle within [-pi, pi)."""
     return angle - 2 * np.pi * np.floor((angle + np.pi) / (2 * np.pi))

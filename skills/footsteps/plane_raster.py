@@ -12,11 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from skills.footsteps.outline_edges import Outlines
 from skills.geometry.pose import Array
 from skills.kernels import kernel
 
 Cells = NDArray[np.int32]
-Indices = NDArray[np.int64]
 
 # Ground this far above other ground is another floor [m]; what is nearer hides what is below, or is newer.
 FLOOR_HEIGHT = 1.2
@@ -46,11 +46,7 @@ class Raster(NamedTuple):
 
 @kernel
 def draw_regions(
-    vertices: Array,
-    ring_starts: Indices,
-    ring_regions: Indices,
-    rotations: Array,
-    origins: Array,
+    outlines: Outlines,
     times: Array,
     corner: Array,
     resolution: float,
@@ -64,6 +60,8 @@ def draw_regions(
     and those on floors of layers already `drawn` (floors, ny, nx), are left out. Returns how many cells have one more
     floor, and the height of the highest vertex.
     """
+    vertices, ring_starts, ring_regions = outlines.vertices, outlines.ring_starts, outlines.ring_regions
+    rotations, origins = outlines.rotations, outlines.origins
     ny, nx = cells.shape
     more_floors, top = 0, -np.inf
     region_count = rotations.shape[0]
@@ -197,6 +195,23 @@ def floor_near(cells: Cells, planes: Array, iy: int, ix: int, x: float, y: float
         height = planes[there, 0] * x + planes[there, 1] * y + planes[there, 2]
         if height <= z + 0.5 * FLOOR_HEIGHT and height > highest:
             best, highest = there, height
+    return best
+
+
+@kernel
+def nearest_floor(raster: Raster, x: float, y: float, z: float) -> int:
+    """The layer whose ground at x, y from the corner is nearest in height to z; 0 where there is none."""
+    scale = 1.0 / raster.resolution
+    floors, ny, nx = raster.cells.shape
+    best, least = 0, np.inf
+    if x >= 0.0 and y >= 0.0 and x * scale < nx and y * scale < ny:
+        for floor in range(floors):
+            there = raster.cells[floor, int(y * scale), int(x * scale)]
+            if there >= 0:
+                plane = raster.planes[there]
+                off = abs(plane[0] * x + plane[1] * y + plane[2] - z)
+                if off < least:
+                    best, least = floor, off
     return best
 
 

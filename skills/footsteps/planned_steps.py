@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-import numpy as np
+from itertools import pairwise
+from math import dist
 
 from skills.footsteps.footstep import Footstep, Side, Stance
 from skills.footsteps.footstep_parameters import FootstepParameters
 from skills.footsteps.landing_region import landing_region
+from skills.footsteps.supported_polygon import whole_sole
 from skills.footsteps.swing_clearance import SwingClearance, swing_clearance
 from skills.footsteps.terrain import Foothold, Terrain
 from skills.footsteps.way import sole_of
-from skills.geometry.pose import Array, Pose
+from skills.geometry.pose import Pose
 
 
 def planned_steps(
@@ -51,12 +53,6 @@ def swing_duration(
     T_world_start: Pose, T_world_end: Pose, swing: SwingClearance, parameters: FootstepParameters
 ) -> float:
     """How long a foot is in the air [s]: the parameters' time, and longer in proportion where its way is long."""
-    corners = np.vstack((T_world_start.p, swing.waypoints_world, T_world_end.p))
-    length = float(np.sum(np.linalg.norm(np.diff(corners, axis=0), axis=1)))
+    corners = (T_world_start.p, *swing.waypoints_world, T_world_end.p)
+    length = sum(dist(a, b) for a, b in pairwise(corners))
     return parameters.swing_duration * max(1.0, length / parameters.swing_way)
-
-
-def whole_sole(parameters: FootstepParameters) -> Array:
-    """The sole's outline in its frame, (4, 2) counter-clockwise [m]."""
-    x, y = 0.5 * parameters.sole_length, 0.5 * parameters.sole_width
-    return np.array(((-x, -y), (x, -y), (x, y), (-x, y)))

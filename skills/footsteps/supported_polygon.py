@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 
 import numpy as np
 
 from skills.footsteps.footstep_parameters import FootstepParameters
 from skills.geometry.polygon import clip_convex, clip_half_plane, convex_hull
-from skills.geometry.pose import Array, Pose
+from skills.geometry.pose import Array, Pose, readonly
 from skills.regions.planar_region import PlanarRegion
+
+
+@lru_cache(maxsize=8)
+def whole_sole(parameters: FootstepParameters) -> Array:
+    """The sole's outline in its frame, (4, 2) counter-clockwise, read-only [m]."""
+    x, y = 0.5 * parameters.sole_length, 0.5 * parameters.sole_width
+    return readonly(((-x, -y), (x, -y), (x, y), (-x, y)))
 
 
 def supported_polygon(T_world_sole: Pose, regions: Iterable[PlanarRegion], parameters: FootstepParameters) -> Array:
@@ -17,8 +25,7 @@ def supported_polygon(T_world_sole: Pose, regions: Iterable[PlanarRegion], param
 
     Ground carries where it is no further above or below the sole's plane than the parameters say.
     """
-    x, y = 0.5 * parameters.sole_length, 0.5 * parameters.sole_width
-    sole = np.array(((-x, -y), (x, -y), (x, y), (-x, y)))
+    sole = whole_sole(parameters)
     pieces = [piece for region in regions for piece in _pieces(T_world_sole, sole, region, parameters)]
     return convex_hull(np.concatenate(pieces)) if pieces else np.zeros((0, 2))
 

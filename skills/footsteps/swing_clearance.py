@@ -10,15 +10,33 @@ checked with that tilt.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from skills.footsteps.footstep_parameters import FootstepParameters
-from skills.footsteps.terrain import Terrain, slopes
-from skills.geometry.pose import Array, Pose, readonly, wrap_angle
+from skills.footsteps.path_progress import wrapped
+from skills.footsteps.plane_raster import Raster
+from skills.footsteps.records import Records
+from skills.footsteps.sole_snap import sweep_soles
+from skills.footsteps.terrain import Terrain, pack, slopes
+from skills.geometry.pose import Array, Pose, readonly
+from skills.kernels import kernel
 
 # Distances between the soles that are held over the ground, in cells: a sole is many of them long.
 _CROSSING, _LEG = 4.0, 2.0
+# Fields are named after the parameters.
+_LIMITS = np.dtype(
+    [
+        (name, np.float64)
+        for name in (
+            *("half_length", "half_width", "swing_margin", "swing_clearance", "swing_height", "swing_lead"),
+            *("swing_leg_clearance", "ground_above"),
+            *("lift_off_zone", "lift_off_obstacle", "landing_zone", "landing_obstacle"),
+        )
+    ]
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,57 +56,106 @@ def swing_clearance(
     terrain: Terrain, T_world_start: Pose, T_world_end: Pose, parameters: FootstepParameters
 ) -> SwingClearance:
     """Find the way of a foot between two footholds that clears the ground by the parameters' margin."""
-    start, end = T_world_start.p, T_world_end.p
+    waypoints = np.empty((2, 3))
+    height = _clear_way(
+        terrain.raster, terrain.corner_world, _row(T_world_start), _row(T_world_end), _limits(parameters), waypoints
+    )
+    return SwingClearance(height, readonly(waypoints))
+
+
+@lru_cache(maxsize=8)
+def _limits(parameters: FootstepParameters) -> NDArray[np.void]:
+    half = {"half_length": 0.5 * parameters.sole_length, "half_width": 0.5 * parameters.sole_width}
+    return pack(_LIMITS, parameters, half)
+
+
+def _row(T_world_sole: Pose) -> Array:
+    """A sole as `sweep_soles` takes it."""
+    return np.array((*T_world_sole.p, T_world_sole.yaw, *slopes(T_world_sole)))
+
+
+@kernel
+def _clear_way(raster: Raster, corner: Array, start: Array, end: Array, limits: Records, waypoints: Array) -> float:
+    """Fill in the waypoints of a way between two soles; its height above the higher of them."""
+    p = limits[0]
     higher = max(start[2], end[2])
-    crossing = _crossing(T_world_start, T_world_end, higher, _CROSSING * terrain.raster.resolution)
-    ground = higher - _clearances(terrain, crossing, parameters, parameters.swing_margin)
-    apex = max(float(np.max(ground)) + parameters.swing_clearance, higher + parameters.swing_height)
-    travelled = np.linalg.norm(crossing[:, :2] - start[:2], axis=1)
-    left = np.linalg.norm(crossing[:, :2] - end[:2], axis=1)
-    near_start = float(np.max(ground[travelled <= parameters.lift_off_zone])) - start[2]
-    near_end = float(np.max(ground[left <= parameters.landing_zone])) - end[2]
-    up_first = near_start > parameters.lift_off_obstacle
-    forward_first = near_end > parameters.landing_obstacle
-    first = _corner(terrain, T_world_start, T_world_end, apex, up_first, parameters)
-    last = _corner(terrain, T_world_end, T_world_start, apex, forward_first, parameters)
-    return SwingClearance(apex - higher, readonly((first, last)))
+    length = np.sqrt((end[0] - start[0]) ** 2 + (end[1] - start[1]) ** 2)
+    soles = _crossing(start, end, higher, 2 + int(length / (_CROSSING * raster.resolution)))
+    clearances = np.empty(soles.shape[0])
+    half_length, half_width = p.half_length + p.swing_margin, p.half_width + p.swing_margin
+    sweep_soles(raster, corner, half_length, half_width, soles, clearances)
+    highest, near_start, near_end = -np.inf, -np.inf, -np.inf
+    for k in range(soles.shape[0]):
+        ground, travelled = higher - clearances[k], length * k / (soles.shape[0] - 1)
+        highest = max(highest, ground)
+        if travelled <= p.lift_off_zone:
+            near_start = max(near_start, ground)
+        if length - travelled <= p.landing_zone:
+            near_end = max(near_end, ground)
+    apex = max(highest + p.swing_clearance, higher + p.swing_height)
+    up_first = near_start - start[2] > p.lift_off_obstacle
+    forward_first = near_end - end[2] > p.landing_obstacle
+    _corner(raster, corner, start, end, apex, up_first, limits, waypoints[0])
+    _corner(raster, corner, end, start, apex, forward_first, limits, waypoints[1])
+    return apex - higher
 
 
+@kernel
 def _corner(
-    terrain: Terrain, T_world_near: Pose, T_world_far: Pose, apex: float, vertical: bool, parameters: FootstepParameters
-) -> Array:
-    """Where the leg from a foothold to the height of the crossing ends, (3,); right above it where no other clears."""
-    near, far = T_world_near.p, T_world_far.p
-    leads = () if vertical else (parameters.swing_lead, 0.5 * parameters.swing_lead)
-    for lead in leads:
-        corner = np.array((*(near[:2] + lead * (far[:2] - near[:2])), apex))
-        leg = _leg(T_world_near, T_world_far, corner, _LEG * terrain.raster.resolution)
-        risen = leg[:, 2] - near[2]
-        needed = np.minimum(parameters.swing_leg_clearance, 0.5 * risen - parameters.ground_above)
-        if np.all(_clearances(terrain, leg, parameters, 0.0) >= needed):
-            return corner
-    return np.array((near[0], near[1], apex))
+    raster: Raster,
+    corner: Array,
+    near: Array,
+    far: Array,
+    apex: float,
+    vertical: bool,
+    limits: Records,
+    waypoint: Array,
+) -> None:
+    """Where the leg from a foothold to the height of the crossing ends; right above it where no other clears."""
+    p = limits[0]
+    for k in range(0 if vertical else 2):
+        lead = p.swing_lead / (1.0 + k)
+        waypoint[0], waypoint[1] = near[0] + lead * (far[0] - near[0]), near[1] + lead * (far[1] - near[1])
+        waypoint[2] = apex
+        leg = _leg(near, far, waypoint, _LEG * raster.resolution)
+        clearances = np.empty(leg.shape[0])
+        sweep_soles(raster, corner, p.half_length, p.half_width, leg, clearances)
+        clear = True
+        for n in range(leg.shape[0]):
+            needed = min(p.swing_leg_clearance, 0.5 * (leg[n, 2] - near[2]) - p.ground_above)
+            clear = clear and clearances[n] >= needed
+        if clear:
+            return
+    waypoint[0], waypoint[1], waypoint[2] = near[0], near[1], apex
 
 
-def _leg(T_world_near: Pose, T_world_far: Pose, corner_world: Array, spacing: float) -> Array:
+@kernel
+def _leg(near: Array, far: Array, waypoint: Array, spacing: float) -> Array:
     """Soles from a foothold to a corner of the way, (N, 6): the slopes fade in proportion, the yaw follows the way."""
-    near, far = T_world_near.p, T_world_far.p
-    whole = np.linalg.norm(far[:2] - near[:2])
-    lead = 0.0 if whole < spacing else np.linalg.norm(corner_world[:2] - near[:2]) / whole
-    fraction = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(corner_world - near) / spacing))[:, None]
-    yaw = T_world_near.yaw + fraction * lead * wrap_angle(T_world_far.yaw - T_world_near.yaw)
-    return np.hstack((near + fraction * (corner_world - near), yaw, (1.0 - fraction) * np.array(slopes(T_world_near))))
+    whole = np.sqrt((far[0] - near[0]) ** 2 + (far[1] - near[1]) ** 2)
+    level = np.sqrt((waypoint[0] - near[0]) ** 2 + (waypoint[1] - near[1]) ** 2)
+    length = np.sqrt(level * level + (waypoint[2] - near[2]) ** 2)
+    lead = 0.0 if whole < spacing else level / whole
+    turn = lead * wrapped(far[3] - near[3])
+    soles = np.empty((2 + int(length / spacing), 6))
+    for k in range(soles.shape[0]):
+        fraction = k / (soles.shape[0] - 1)
+        for i in range(3):
+            soles[k, i] = near[i] + fraction * (waypoint[i] - near[i])
+        soles[k, 3] = near[3] + fraction * turn
+        soles[k, 4], soles[k, 5] = (1.0 - fraction) * near[4], (1.0 - fraction) * near[5]
+    return soles
 
 
-def _crossing(T_world_start: Pose, T_world_end: Pose, height: float, spacing: float) -> Array:
-    """Level soles at one height from above one foothold to above the other, (N, 6)."""
-    way = T_world_end.p[:2] - T_world_start.p[:2]
-    fraction = np.linspace(0.0, 1.0, 2 + int(np.linalg.norm(way) / spacing))[:, None]
-    yaw = T_world_start.yaw + fraction * wrap_angle(T_world_end.yaw - T_world_start.yaw)
-    heights, level = np.full_like(fraction, height), np.zeros((len(fraction), 2))
-    return np.hstack((T_world_start.p[:2] + fraction * way, heights, yaw, level))
-
-
-def _clearances(terrain: Terrain, soles: Array, parameters: FootstepParameters, margin: float) -> Array:
-    """Clearance of soles that are larger by a margin on all sides."""
-    return terrain.clearances(soles, 0.5 * parameters.sole_length + margin, 0.5 * parameters.sole_width + margin)
+@kernel
+def _crossing(start: Array, end: Array, height: float, count: int) -> Array:
+    """Level soles at one height from above one foothold to above the other, (count, 6)."""
+    turn = wrapped(end[3] - start[3])
+    soles = np.zeros((count, 6))
+    for k in range(count):
+        fraction = k / (count - 1)
+        soles[k, 0] = start[0] + fraction * (end[0] - start[0])
+        soles[k, 1] = start[1] + fraction * (end[1] - start[1])
+        soles[k, 2] = height
+        soles[k, 3] = start[3] + fraction * turn
+    return soles

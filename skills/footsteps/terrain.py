@@ -8,22 +8,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import cos, sin, sqrt
+from math import cos, floor, sin, sqrt
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from skills.footsteps.footstep_parameters import FootstepParameters, TerrainParameters
-from skills.footsteps.plane_raster import Raster, close_seams, draw_regions, plane_heights
+from skills.footsteps.outline_edges import Outlines, edges_near
+from skills.footsteps.plane_raster import Raster, close_seams, draw_regions, nearest_floor, plane_heights
 from skills.footsteps.rejections import NO_GROUND, REASONS
-from skills.footsteps.sole_snap import SNAP_LIMITS, SoleSamples, snap_sole, sweep_soles
+from skills.footsteps.sole_snap import SNAP_LIMITS, SoleSamples, snap_sole
 from skills.footsteps.supported_polygon import supported_polygon
 from skills.footsteps.walls import draw_walls, spread_tops
 from skills.geometry.pose import Array, Pose, readonly
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 
 _MOST_FLOORS = 4
+_NO_EDGES = readonly(np.zeros((0, 3)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,6 +79,14 @@ class Terrain(Protocol):
         """The planar region that is the ground nearest to a point; None where there is none."""
         ...
 
+    def edges(self, T_world_sole: Pose, near: float) -> Array:
+        """Edges of the region under a sole that come near its centre and have it inside; none without ground.
+
+        Returns:
+            (N, 3) unit outward normal x, y and offset from the centre, in the sole's frame [m].
+        """
+        ...
+
     def snap(self, x: float, y: float, yaw: float, parameters: FootstepParameters, z: float = np.inf) -> Foothold:
         """Put a sole on the ground: its pose, and whether it may stand there.
 
@@ -95,16 +105,6 @@ class Terrain(Protocol):
         """
         ...
 
-    def clearances(self, soles_world: Array, half_length: float, half_width: float) -> Array:
-        """Smallest height of each sole above ground and walls under it, (N,) [m]; +inf where none are known.
-
-        Args:
-            soles_world: (N, 6) rows x, y, z, yaw of the sole's centre, slopes dz/dx and dz/dy of the sole.
-            half_length: half the length of the sole [m].
-            half_width: half its width [m].
-        """
-        ...
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RegionTerrain:
@@ -114,25 +114,29 @@ class RegionTerrain:
     corner_world: Array
     raster: Raster
     ground: tuple[PlanarRegion, ...]
+    outlines: Outlines
 
     def floor(self, p_world: Array) -> int:
         """Which layer of the raster is the ground nearest to a point; 0 where there is none under it."""
-        cells = self._cells(p_world)
         x, y = p_world[:2] - self.corner_world
-        heights = self.raster.planes @ (x, y, 1.0) if len(self.ground) else np.zeros(0)
-        return int(np.argmin([abs(heights[plane] - p_world[2]) if plane >= 0 else np.inf for plane in cells]))
+        return nearest_floor(self.raster, x, y, p_world[2])
 
     def region(self, p_world: Array) -> PlanarRegion | None:
         """The planar region that is the ground nearest to a point; None where there is none."""
-        plane = self._cells(p_world)[self.floor(p_world)]
+        plane = self._plane(p_world)
         return self.ground[plane] if plane >= 0 else None
 
-    def _cells(self, p_world: Array) -> NDArray[np.int32]:
-        """Plane indices at a point, (floors,)."""
+    def edges(self, T_world_sole: Pose, near: float) -> Array:
+        """Edges of the region under a sole that come near its centre and have it inside; none without ground."""
+        plane = self._plane(T_world_sole.p)
+        return edges_near(self.outlines, plane, T_world_sole.R, T_world_sole.p, near) if plane >= 0 else _NO_EDGES
+
+    def _plane(self, p_world: Array) -> int:
+        """Index of the region that is the ground nearest to a point; -1 where there is none."""
         cells = self.raster.cells
-        ix, iy = (int(n) for n in np.floor((p_world[:2] - self.corner_world) / self.raster.resolution))
+        ix, iy = (floor(n) for n in (p_world[:2] - self.corner_world) / self.raster.resolution)
         inside = 0 <= iy < cells.shape[1] and 0 <= ix < cells.shape[2]
-        return cells[:, iy, ix] if inside else np.full(len(cells), -1, dtype=np.int32)
+        return int(cells[self.floor(p_world), iy, ix]) if inside else -1
 
     def snap(self, x: float, y: float, yaw: float, parameters: FootstepParameters, z: float = np.inf) -> Foothold:
         """Put a sole on the ground: its pose, and whether it may stand there."""
@@ -140,9 +144,9 @@ class RegionTerrain:
         limits, samples = foothold_rules(parameters)
         x_corner, y_corner = (float(n) for n in np.array((x, y)) - self.corner_world)
         best, least = Foothold(None, 0.0, REASONS[NO_GROUND]), np.inf
-        for floor in range(self.raster.cells.shape[0]):
+        for layer in range(self.raster.cells.shape[0]):
             found = np.full(4, np.nan)
-            outcome = snap_sole(self.raster, floor, limits, samples, x_corner, y_corner, yaw, found)
+            outcome = snap_sole(self.raster, layer, limits, samples, x_corner, y_corner, yaw, found)
             height, a, b, share = found
             off = -height if np.isinf(z) else abs(height - z)
             if off < least:
@@ -171,13 +175,6 @@ class RegionTerrain:
         plane_heights(self.raster, points, heights)
         return heights
 
-    def clearances(self, soles_world: Array, half_length: float, half_width: float) -> Array:
-        """Smallest height of each sole above ground and walls under it, (N,) [m]; +inf where none are known."""
-        smallest = np.empty(len(soles_world))
-        soles = np.ascontiguousarray(soles_world)
-        sweep_soles(self.raster, self.corner_world, half_length, half_width, soles, smallest)
-        return smallest
-
 
 def region_terrain(
     regions: PlanarRegions, low_world: Array, high_world: Array, parameters: TerrainParameters
@@ -199,37 +196,30 @@ def region_terrain(
     steepest = np.cos(parameters.steepest_region)
     ground = [region for region in regions.regions if region.T_world_region.R[2, 2] > steepest]
     steep = [region for region in regions.regions if abs(region.T_world_region.R[2, 2]) <= steepest]
-    cells, planes, top = _draw(ground, low, resolution, (ny, nx))
+    outlines = Outlines.of(ground)
+    times = np.array([region.time for region in ground], dtype=np.float64)
+    cells, planes, top = _draw(outlines, times, low, resolution, (ny, nx))
     if ground:
         width, step = float(parameters.seam_width), float(parameters.seam_step)
-        cells = np.stack([close_seams(floor, planes, resolution, width, step) for floor in cells])
+        cells = np.stack([close_seams(layer, planes, resolution, width, step) for layer in cells])
     walls = _draw_walls(steep, low, float(parameters.wall_resolution), np.asarray(high_world) - low)
     tops = spread_tops(walls, float(parameters.wall_resolution)) if len(walls) else np.zeros((0, 0), dtype=np.float32)
     for array in (cells, planes, walls, tops):
         array.flags.writeable = False
     raster = Raster(cells, planes, resolution, walls, float(parameters.wall_resolution), tops, top)
-    return RegionTerrain(regions.frame_id, low, raster, tuple(ground))
+    return RegionTerrain(regions.frame_id, low, raster, tuple(ground), outlines)
 
 
 def _draw(
-    ground: list[PlanarRegion], corner: Array, resolution: float, shape: tuple[int, int]
+    outlines: Outlines, times: Array, corner: Array, resolution: float, shape: tuple[int, int]
 ) -> tuple[NDArray[np.int32], Array, float]:
     """Cells (floors, ny, nx), planes and the height of the top; as many layers as there are floors above each other."""
-    planes = np.zeros((len(ground), 3))
-    rings = [(i, ring) for i, region in enumerate(ground) for ring in (region.hull_region, *region.holes_region)]
-    vertices = np.concatenate([ring for _, ring in rings]) if rings else np.zeros((0, 2))
-    starts = np.cumsum([0] + [len(ring) for _, ring in rings])
-    owners = np.array([i for i, _ in rings], dtype=np.int64)
-    rotations = np.array([region.T_world_region.R for region in ground]).reshape(-1, 3, 3)
-    origins = np.array([region.T_world_region.p for region in ground]).reshape(-1, 3)
-    times = np.array([region.time for region in ground], dtype=np.float64)
+    planes = np.zeros((len(times), 3))
     cells = np.empty((0, *shape), dtype=np.int32)
     more_floors, top = 1, -np.inf
     while more_floors and len(cells) < _MOST_FLOORS:
         layer = np.full(shape, -1, dtype=np.int32)
-        more_floors, top = draw_regions(
-            vertices, starts, owners, rotations, origins, times, corner, resolution, cells, layer, planes
-        )
+        more_floors, top = draw_regions(outlines, times, corner, resolution, cells, layer, planes)
         cells = np.concatenate((cells, layer[None]))
     return cells, planes, top
 

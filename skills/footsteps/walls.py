@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from skills.footsteps.plane_raster import Indices, Raster
+from skills.footsteps.plane_raster import Raster
 from skills.footsteps.records import Records
 from skills.geometry.pose import Array
 from skills.kernels import kernel
@@ -23,7 +23,7 @@ _GROUND_SPACING = 0.04
 @kernel
 def draw_walls(
     vertices: Array,
-    starts: Indices,
+    starts: NDArray[np.int64],
     rotations: Array,
     origins: Array,
     corner: Array,

@@ -85,7 +85,7 @@ class WayRules:
 
     def left(self, footholds: list[Foothold] | tuple[Foothold, ...]) -> float:
         """The part of the cost to go from the end of a way that progress takes off."""
-        x, y, z, yaw, *_ = self._rows(footholds)[-1]
+        x, y, z, yaw, *_ = self._sole(footholds, len(footholds) + 1)
         sign = self._sign if len(footholds) % 2 else -self._sign
         _, limits, goal, path, field = self._request
         node = self._scratch[2]
@@ -93,11 +93,16 @@ class WayRules:
         return float(node["left"])
 
     def _check(self, footholds: list[Foothold] | tuple[Foothold, ...], first: int, last: int) -> float:
-        rows = np.array(self._rows(footholds))
-        return check_way(*self._request, rows, self._sign, first, last, *self._scratch)
+        rows = np.array([self._sole(footholds, k) for k in range(first, last + 3)])
+        sign = -self._sign if first % 2 else self._sign
+        return check_way(*self._request, rows, sign, *self._scratch)
 
-    def _rows(self, footholds: list[Foothold] | tuple[Foothold, ...]) -> list[tuple[float, ...]]:
-        return [*self._feet, *(self._row(sole_of(foothold), foothold.share) for foothold in footholds)]
+    def _sole(self, footholds: list[Foothold] | tuple[Foothold, ...], index: int) -> tuple[float, ...]:
+        """A sole as `check_way` takes it: the swing foot and the stance foot come before the footholds."""
+        if index < 2:
+            return self._feet[index]
+        foothold = footholds[index - 2]
+        return self._row(sole_of(foothold), foothold.share)
 
     def _row(self, T_world_sole: Pose, share: float) -> tuple[float, ...]:
         x, y, z = T_world_sole.p

@@ -23,8 +23,6 @@ def check_way(
     field: Array,
     soles: Array,
     sign: float,
-    first: int,
-    last: int,
     stand: Records,
     ground: Records,
     node: Records,
@@ -40,8 +38,6 @@ def check_way(
         soles: (N + 2, 7) rows of x, y from the corner, z, yaw, slopes a and b, supported share: the swing foot and the
             stance foot before the first step, then the footholds of the steps.
         sign: +1 where the left foot makes the first step, -1 where the right one does.
-        first: the first step to check, counted from 0.
-        last: the last one.
         stand: one `STAND` to work on.
         ground: one `GROUND` to work on.
         node: one `NODE` to work on.
@@ -49,7 +45,7 @@ def check_way(
     heading = np.empty(3)
     cost = 0.0
     ground.outcome = FOOTHOLD
-    for k in range(first, last + 1):
+    for k in range(soles.shape[0] - 2):
         side = sign if k % 2 == 0 else -sign
         start, support, landing = soles[k], soles[k + 1], soles[k + 2]
         stand.x, stand.y, stand.z = support[0], support[1], support[2]

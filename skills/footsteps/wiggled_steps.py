@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import hypot
 
 import numpy as np
 
 from skills.footsteps.footstep import Side
 from skills.footsteps.footstep_parameters import FootstepParameters
+from skills.footsteps.supported_polygon import whole_sole
 from skills.footsteps.terrain import Foothold, Terrain
 from skills.footsteps.way import WayRules, body_beside, sole_of
 from skills.footsteps.wiggle import sole_margin, wiggle_sole
 from skills.geometry.pose import Array, Pose
-from skills.regions.planar_region import PlanarRegion
 
 # Tries of a move that breaks a limit: the whole of it, then half.
 _TRIES = (1.0, 0.5)
@@ -72,35 +73,17 @@ def _farther_off(before_xy: Array, after_xy: Array, goal_xy: Array, parameters: 
 def _wanted(terrain: Terrain, T_world_sole: Pose, parameters: FootstepParameters) -> tuple[float, Array]:
     """The margin that a sole has inside its region, and the move (x, y, turn) in its frame that it asks for."""
     move = np.zeros(3)
-    region = terrain.region(T_world_sole.p)
-    if region is None:
+    if terrain.region(T_world_sole.p) is None:
         return 0.0, move
-    half = 0.5 * np.array((parameters.sole_length, parameters.sole_width))
-    corners = half * np.array(((-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)))
-    near = float(np.linalg.norm(half)) + parameters.wiggle_margin + parameters.wiggle_move
-    edges = _edges_near(region, T_world_sole, near)
-    margin = sole_margin(edges, corners, parameters.wiggle_margin)
+    near = (
+        0.5 * hypot(parameters.sole_length, parameters.sole_width) + parameters.wiggle_margin + parameters.wiggle_move
+    )
+    edges, sole = terrain.edges(T_world_sole, near), whole_sole(parameters)
+    margin = sole_margin(edges, sole, parameters.wiggle_margin)
     if margin < parameters.wiggle_margin:
         limits = (parameters.wiggle_move, parameters.wiggle_turn)
-        wiggle_sole(edges, corners, parameters.wiggle_margin, *limits, move)
+        wiggle_sole(edges, sole, parameters.wiggle_margin, *limits, move)
     return margin, move
-
-
-def _edges_near(region: PlanarRegion, T_world_sole: Pose, near: float) -> Array:
-    """Edges of a region's rings that come near a sole's centre and have it inside: normal, offset; sole's frame."""
-    T_sole_region = T_world_sole.inverse @ region.T_world_region
-    rows = []
-    for ring in (region.hull_region, *region.holes_region):
-        points = ring @ T_sole_region.R[:2, :2].T + T_sole_region.p[:2]
-        spans = np.concatenate((points[1:], points[:1])) - points
-        lengths = np.maximum(np.sqrt(spans[:, 0] ** 2 + spans[:, 1] ** 2), 1e-9)
-        normals = np.column_stack((spans[:, 1], -spans[:, 0])) / lengths[:, None]
-        offsets = np.sum(normals * points, axis=1)
-        along = np.clip(-np.sum(points * spans, axis=1) / lengths**2, 0.0, 1.0)
-        nearest = points + along[:, None] * spans
-        counts = (nearest[:, 0] ** 2 + nearest[:, 1] ** 2 < near * near) & (offsets > 0.0) & (lengths > 1e-6)
-        rows.append(np.column_stack((normals[counts], offsets[counts])))
-    return np.ascontiguousarray(np.concatenate(rows))
 
 
 def _snapped(terrain: Terrain, T_world_sole: Pose, move: Array, parameters: FootstepParameters) -> Foothold | None:
