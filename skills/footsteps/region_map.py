@@ -1,7 +1,7 @@
-"""Planar-region maps in JSON files: ground with a start and a goal, on which footstep planners are compared.
+"""Planar-region maps: ground with a start and a goal, on which footstep planners are compared.
 
-The format is the one in which the maps of the reference system (Apache-2.0) are published again: a start and a goal for
-the middle of the feet, and regions with a frame, a concave hull and its convex parts.
+A map is a JSON file with a start and a goal for the middle of the feet, and regions with a frame, a concave hull and
+its convex parts; or a folder with the same in text files, see `region_folder`.
 """
 
 from __future__ import annotations
@@ -15,15 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from skills.footsteps.region_folder import INPUTS, RegionMapError, read_region_folder
 from skills.geometry.polygon import signed_area
 from skills.geometry.pose import Array, Pose, readonly
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 
 _SUBFOLDER = "planar_regions"
-
-
-class RegionMapError(ValueError):
-    """A map that cannot be read; the message says which file, where in it, the value got and what is allowed."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,33 +46,28 @@ class RegionMap:
 
 
 def map_files(folder: Path) -> list[Path]:
-    """The map files of a folder, or of its subfolder `planar_regions`, in the order of their names.
+    """The maps in a folder, or in its subfolder `planar_regions`, files and folders in the order of their names.
 
     Raises:
         RegionMapError: where there are none.
     """
     for place in (folder / _SUBFOLDER, folder):
-        files = sorted(place.glob("*.json"))
-        if files:
-            return files
-    kind = "holds no *.json, neither does its planar_regions" if folder.is_dir() else "is not a folder"
+        maps = sorted((*place.glob("*.json"), *(inputs.parent for inputs in place.glob(f"*/{INPUTS}"))))
+        if maps:
+            return maps
+    kind = (
+        f"holds no *.json and no */{INPUTS}, neither does its planar_regions" if folder.is_dir() else "is not a folder"
+    )
     raise RegionMapError(f"{folder}: {kind}; allowed: a folder of planar-region maps")
 
 
 def read_region_map(path: Path) -> RegionMap:
-    """Read a map; headings that the file leaves out point from start to goal.
+    """Read a map, a file or a folder; headings that it leaves out point from start to goal.
 
     Raises:
-        RegionMapError: where the file is missing or is no such map.
+        RegionMapError: where it is missing or is no such map.
     """
-    try:
-        data = json.loads(path.read_text(encoding="utf-8"))
-    except OSError as error:
-        raise RegionMapError(f"{path}: {error.strerror or error}") from error
-    except ValueError as error:
-        raise RegionMapError(f"{path}: not a JSON file: {error}") from error
-    if not isinstance(data, dict) or not isinstance(data.get("regions"), list):
-        raise RegionMapError(f'{path}: needs an object with a list "regions"')
+    data = read_region_folder(path) if path.is_dir() else _json(path)
     start, goal = (_numbers(path, key, data.get(key), (3,)) for key in ("start_position", "goal_position"))
     facing = atan2(goal[1] - start[1], goal[0] - start[0])
     yaws = [float(_numbers(path, key, data.get(key, facing), ())) for key in ("start_yaw", "goal_yaw")]
@@ -87,6 +79,18 @@ def read_region_map(path: Path) -> RegionMap:
         goal_world=np.array((*goal, yaws[1])),
         note=str(data.get("status_2019", "")),
     )
+
+
+def _json(path: Path) -> dict[str, Any]:
+    try:
+        data = json.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise RegionMapError(f"{path}: {error.strerror or error}") from error
+    except ValueError as error:
+        raise RegionMapError(f"{path}: not a JSON file: {error}") from error
+    if not isinstance(data, dict) or not isinstance(data.get("regions"), list):
+        raise RegionMapError(f'{path}: needs an object with a list "regions"')
+    return data
 
 
 def _region(path: Path, place: str, data: Any) -> PlanarRegion:
