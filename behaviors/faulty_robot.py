@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Generic, TypeVar
 
@@ -38,7 +38,8 @@ class FaultyRobot:
         def of(name: str) -> tuple[Fault, ...]:
             return tuple(fault for fault in faults if fault.at == f"sensor:{name}")
 
-        self._depth = _Frames(of("depth"), "frame_id", "depth")
+        self._depth_faults = of("depth")
+        self._depth: dict[str, _Frames[DepthImage]] = {}
         self._lidar = _Frames(of("lidar"), "scan_id", "ranges")
         self._state = _Reports(of("state"), _break_state)
         self._status = _Reports(of("status"), _break_status)
@@ -56,9 +57,18 @@ class FaultyRobot:
         """What the walking controller is doing, perhaps as it was or as it is not."""
         return self._status.take(self.robot.time, self.robot.status)
 
-    def depth_image(self) -> DepthImage | None:
-        """The newest image that gets through."""
-        return self._depth.take(self.robot.time, self.robot.depth_image)
+    def depth_frames(self) -> Mapping[str, int]:
+        """Id of the newest image of each depth camera that gets through."""
+        frames = self.robot.depth_frames()
+        if not self._depth_faults:
+            return frames
+        images = {camera: self.depth_image(camera) for camera in frames}
+        return {camera: image.frame_id for camera, image in images.items() if image is not None}
+
+    def depth_image(self, camera: str) -> DepthImage | None:
+        """The newest image of a camera that gets through."""
+        frames = self._depth.setdefault(camera, _Frames(self._depth_faults, "frame_id", "depth"))
+        return frames.take(self.robot.time, lambda: self.robot.depth_image(camera))
 
     def lidar_scan(self) -> LidarScan | None:
         """The newest scan that gets through."""

@@ -7,7 +7,7 @@ the end of the tick. So the world moves as it did, and every image is rendered a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from behaviors.canonical import encode
@@ -57,9 +57,13 @@ class FollowingRobot:
         """What the walking controller is doing."""
         return self.robot.status()
 
-    def depth_image(self) -> DepthImage | None:
-        """The newest depth image; None before the first."""
-        return self.robot.depth_image()
+    def depth_frames(self) -> Mapping[str, int]:
+        """Id of the newest image of each depth camera that has one, by the camera's name."""
+        return self.robot.depth_frames()
+
+    def depth_image(self, camera: str) -> DepthImage | None:
+        """The newest depth image of a camera; None before its first."""
+        return self.robot.depth_image(camera)
 
     def lidar_scan(self) -> LidarScan | None:
         """The newest lidar scan; None before the first."""

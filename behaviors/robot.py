@@ -5,6 +5,7 @@ Both are structural protocols: a simulation or a real robot satisfies them witho
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Protocol
 
 from skills.footsteps.footstep import Footstep
@@ -30,8 +31,12 @@ class Robot(Protocol):
         """What the walking controller is doing."""
         ...
 
-    def depth_image(self) -> DepthImage | None:
-        """The newest depth image; None before the first."""
+    def depth_frames(self) -> Mapping[str, int]:
+        """Id of the newest image of each depth camera, by the camera's name; without those that have none yet."""
+        ...
+
+    def depth_image(self, camera: str) -> DepthImage | None:
+        """The newest depth image of a camera; None before its first."""
         ...
 
     def lidar_scan(self) -> LidarScan | None:

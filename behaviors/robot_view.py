@@ -7,6 +7,7 @@ the world here, and every command is moved back.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from behaviors.robot import Robot
@@ -95,9 +96,13 @@ class RobotView:
             self._status = status.moved(self.T_world_odometry) if self._corrected else status
         return self._status
 
-    def depth_image(self) -> DepthImage | None:
-        """The newest depth image; None before the first."""
-        image = self.robot.depth_image()
+    def depth_frames(self) -> Mapping[str, int]:
+        """Id of the newest image of each depth camera that has one, by the camera's name."""
+        return self.robot.depth_frames()
+
+    def depth_image(self, camera: str) -> DepthImage | None:
+        """The newest depth image of a camera; None before its first."""
+        image = self.robot.depth_image(camera)
         return image.moved(self.T_world_odometry) if image is not None and self._corrected else image
 
     def lidar_scan(self) -> LidarScan | None:

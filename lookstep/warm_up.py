@@ -49,7 +49,8 @@ def _run_kernels(configuration: Configuration) -> None:
     world = build_world(course, configuration, "kinematic")
     parameters = MapParameters.of(configuration.region_memory, configuration.registration, configuration.footsteps)
     with _second_process():
-        image, scan, stance = world.depth_image(), world.lidar_scan(), world.status().imminent_stance
+        image = world.depth_image(world.depth_cameras.names[0])
+        scan, stance = world.lidar_scan(), world.status().imminent_stance
         assert image is not None and scan is not None, "the world takes its first frames when it is made"
         HeightMapper(configuration.height_map).update(scan, stance.mid_feet)
         patches = fit_patches(without_body(image), configuration.regions)

@@ -60,12 +60,16 @@ def _validate(instance: Any) -> None:
 def check_value(key: str, value: Any, default: Any, metadata: Any) -> None:
     """Check one value against the type of its default and the range in its metadata.
 
-    A tuple is checked element by element and must have as many elements as its default; one of tuples may have any
-    number of them.
+    A tuple is checked element by element and must have as many elements as its default; one of tuples, or of parameter
+    classes, which check themselves, may have any number of them.
 
     Raises:
         ParameterError: where the value is not allowed; the message names the value and what is allowed.
     """
+    if isinstance(default, tuple) and default and dataclasses.is_dataclass(default[0]):
+        if not isinstance(value, tuple) or not all(isinstance(element, type(default[0])) for element in value):
+            raise ParameterError(key, f"got {value!r}, needs a list of {type(default[0]).__name__}")
+        return
     if isinstance(default, tuple) and default and isinstance(default[0], tuple):
         if not isinstance(value, tuple):
             raise ParameterError(key, f"got {value!r}, needs a list")

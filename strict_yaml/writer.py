@@ -45,7 +45,10 @@ def _lines(values: Any, indent: str) -> Iterator[str]:
 
 def _is_table(value: Any) -> bool:
     """Whether a value is written as one row a line."""
-    return isinstance(value, tuple) and bool(value) and all(isinstance(row, tuple) for row in value)
+    is_row = (
+        [isinstance(row, tuple) or dataclasses.is_dataclass(row) for row in value] if isinstance(value, tuple) else []
+    )
+    return bool(is_row) and all(is_row)
 
 
 def _remark(metadata: Any) -> str:
@@ -63,6 +66,9 @@ def _remark(metadata: Any) -> str:
 def _text(value: Any) -> str:
     if isinstance(value, tuple):
         return f"[{', '.join(_text(element) for element in value)}]"
+    if dataclasses.is_dataclass(value):
+        fields = [(field.name, getattr(value, field.name)) for field in dataclasses.fields(value)]
+        return f"{{{', '.join(f'{name}: {_text(part)}' for name, part in fields)}}}"
     if isinstance(value, Enum):
         return _text(value.value)
     if value is None:

@@ -30,24 +30,37 @@ class ExtractRegionsParameters(SkillParameters):
 
 @leaf
 class ExtractRegions(SkillLeaf):
-    """Finds the planar regions of the newest depth image."""
+    """Finds the planar regions of the newest depth image of the camera whose turn it is.
+
+    It is the turn of the camera that has taken most images since it was last looked through, so that a robot is free to
+    say which way it looks more often; of equals, of the one that has waited longest.
+    """
 
     Parameters = ExtractRegionsParameters
     extraction = Output(RegionExtraction, "regions of one depth image, and what was rejected and why")
 
     def setup(self) -> None:
         """No image has been used yet."""
-        self._last_frame_id = -1
+        self._used: dict[str, tuple[int, float]] = {}
 
     def request(self) -> Call | Status:
-        """Take the newest image, each only once."""
-        image = self.context.robot.depth_image()
-        if image is None:
+        """Take the newest image of the next camera, each only once."""
+        frames = self.context.robot.depth_frames()
+        if not frames:
             return self.running("waits for the first depth image")
-        if image.frame_id == self._last_frame_id:
+        camera = max(frames, key=lambda name: self._turn(name, frames[name]))
+        image = self.context.robot.depth_image(camera)
+        if image is None or image.frame_id == self._used.get(camera, (-1, 0.0))[0]:
             return self.running("waits for the next depth image")
-        self._last_frame_id = image.frame_id
+        self._used[camera] = image.frame_id, self.context.time
         return self.call(examine_regions, image, self.context.parameters["regions"])
+
+    def _turn(self, camera: str, frame_id: int) -> tuple[bool, int, float]:
+        """The greatest of these is the camera's whose turn it is."""
+        if camera not in self._used:
+            return True, 0, 0.0
+        used, time = self._used[camera]
+        return False, frame_id - used, -time
 
     def receive(self, result: RegionExtraction) -> Status:
         """Hand the regions on."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import rerun.blueprint as rrb
 
 TIMELINE = "robot_time"
 
 
-def default_blueprint(start: tuple[float, float], film: bool = False) -> rrb.Blueprint:
+def default_blueprint(start: tuple[float, float], cameras: Sequence[str], film: bool = False) -> rrb.Blueprint:
     """The layout for a walk that starts at (x, y) in the world [m], with a film beside it where there is one."""
     scene = _scene(
         "Walk",
@@ -37,10 +39,10 @@ def default_blueprint(start: tuple[float, float], film: bool = False) -> rrb.Blu
         rrb.StateTimelineView(name="Deadlines", origin="/deadlines"),
     )
     eyes = rrb.Horizontal(
-        rrb.Spatial2DView(name="Regions extracted", origin="/camera/regions"),
+        rrb.Tabs(*(rrb.Spatial2DView(name=f"Regions, {name}", origin=f"/camera/{name}/regions") for name in cameras)),
         rrb.Tabs(
-            rrb.Spatial2DView(name="Depth image", origin="/camera/depth"),
-            rrb.TextDocumentView(name="Rejected", origin="/camera/rejected"),
+            *(rrb.Spatial2DView(name=f"Depth, {name}", origin=f"/camera/{name}/depth") for name in cameras),
+            *(rrb.TextDocumentView(name=f"Rejected, {name}", origin=f"/camera/{name}/rejected") for name in cameras),
             rrb.TextDocumentView(name="Map", origin="/map"),
             rrb.Spatial2DView(name="Height map", origin="/height_map"),
         ),

@@ -41,12 +41,13 @@ class PerceptionViews:
     def log_extraction(self, extraction: RegionExtraction) -> None:
         """The depth image, what became of its pixels, and why pieces of it were rejected."""
         log = self._stream.log
-        log("camera/depth", encoded_depth(extraction.image))
+        camera = f"camera/{extraction.image.camera_name}"
+        log(f"{camera}/depth", encoded_depth(extraction.image))
         stride = 2 if extraction.image.camera.width > _PICTURE_WIDTH else 1
         colors = scene.colors_by_place(extraction.regions)
-        log("camera/regions", encoded_picture(debug_image(extraction, stride, colors)))
-        log("camera/rejected", rr.TextDocument(rejections(extraction), media_type="text/markdown"))
-        log("world/camera", *pinhole_of(extraction.image))
+        log(f"{camera}/regions", encoded_picture(debug_image(extraction, stride, colors)))
+        log(f"{camera}/rejected", rr.TextDocument(rejections(extraction), media_type="text/markdown"))
+        log(f"world/{camera}", *pinhole_of(extraction.image))
         time, noise = extraction.image.time, extraction.noise
         self._columns.scalar("noise/own", time, 1e3 * noise.own(_METRE))
         self._columns.scalar("noise/shared", time, 1e3 * noise.shared(_METRE))

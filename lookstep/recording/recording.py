@@ -73,7 +73,9 @@ class Recording:
     ) -> None:
         course = world.course
         self._stream = rr.RecordingStream(_APPLICATION, recording_id=f"{course.name}-{seed}")
-        self._stream.save(path, default_blueprint=default_blueprint(course.start[:2], film is not None))
+        self._stream.save(
+            path, default_blueprint=default_blueprint(course.start[:2], world.depth_cameras.names, film is not None)
+        )
         self._course = course
         self._sole = robot.sole_corners_sole
         self._columns = Columns(self._stream)

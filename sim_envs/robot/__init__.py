@@ -8,11 +8,12 @@ from sim_envs.robot.configuration import (
     qvel_from_velocity,
     velocity_from_qvel,
 )
-from sim_envs.robot.robot_description import SHIPPED_ROBOTS, RobotDescription
+from sim_envs.robot.robot_description import SHIPPED_ROBOTS, CameraMount, RobotDescription
 
 __all__ = [
     "SHIPPED_ROBOTS",
     "Biped",
+    "CameraMount",
     "RobotDescription",
     "configuration_from_qpos",
     "pelvis_pose",

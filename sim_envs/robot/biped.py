@@ -1,4 +1,4 @@
-"""The robot as a composer entity: its MJCF file, and the depth camera and the lidar that its table mounts on it."""
+"""The robot as a composer entity: its MJCF file, and the depth cameras and the lidar that its table mounts on it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from dm_control import composer, mjcf
 
-from sim_envs.robot.robot_description import RobotDescription
+from sim_envs.robot.robot_description import CameraMount, RobotDescription
 from skills.footsteps.footstep import Side
 from skills.geometry.pose import Pose, rotation_x
 from skills.walking import RobotError
@@ -35,18 +35,23 @@ class Biped(composer.Entity):
             for kind in ("touch", "force", "torque"):
                 self._need("sensor", f"{side.value}_{kind}")
             self._need("geom", f"{side.value}_foot_collision")
-        self._add_camera()
+        names = [mount.name for mount in description.cameras]
+        if not names or len(set(names)) < len(names):
+            raise RobotError(f"cameras: got the names {names}, needs at least one, each once")
+        self._camera_bodies = [self._add_camera(mount) for mount in description.cameras]
         self._add_lidar()
 
-    def _add_camera(self) -> None:
-        self._camera_body = self._mount("camera_body", self._description.camera_body)
-        T_body_camera = self._description.T_body_camera
+    def _add_camera(self, mount: CameraMount) -> Any:
+        body = self._mount(f"camera {mount.name}", mount.body)
+        T_body_camera = mount.T_body_camera
         # MuJoCo's cameras look along -z with y up.
         T_body_mujoco_camera = Pose(T_body_camera.R @ rotation_x(np.pi), T_body_camera.p)
-        self._camera_body.add("camera", name="depth", pos=T_body_camera.p, quat=T_body_mujoco_camera.quaternion_wxyz)
+        body.add("camera", name=mount.name, pos=T_body_camera.p, quat=T_body_mujoco_camera.quaternion_wxyz)
         # Behind the lens, where the camera does not see it.
         T_camera_housing = Pose(np.eye(3), np.array((0.0, 0.0, -_CAMERA_BEHIND_LENS)))
-        _add_housing(self._camera_body, "camera", T_body_camera @ T_camera_housing, "box", _CAMERA_HALF_SIZE)
+        name = f"{mount.name}_camera"
+        _add_housing(body, name, T_body_camera @ T_camera_housing, "box", _CAMERA_HALF_SIZE)
+        return body
 
     def _add_lidar(self) -> None:
         self._lidar_body = self._mount("lidar_body", self._description.lidar_body)
@@ -82,9 +87,9 @@ class Biped(composer.Entity):
         return root.worldbody.body[0]
 
     @property
-    def camera_body(self) -> mjcf.Element:
-        """The body that carries the depth camera."""
-        return self._camera_body
+    def camera_bodies(self) -> list[mjcf.Element]:
+        """The bodies that carry the depth cameras, in the order of the table."""
+        return self._camera_bodies
 
     @property
     def lidar_body(self) -> mjcf.Element:

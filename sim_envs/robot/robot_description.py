@@ -16,6 +16,28 @@ SHIPPED_ROBOTS = Path(__file__).parent
 
 
 @parameters
+class CameraMount:
+    """Where a depth camera sits and looks."""
+
+    name: str = parameter("front", unit="1", meaning="name of the camera")
+    body: str = parameter("torso", unit="1", meaning="body that carries it")
+    position: tuple[float, float, float] = parameter(
+        (0.14, 0.0, 0.03), unit="m", meaning="optical centre in that body's frame", minimum=-2.0, maximum=2.0
+    )
+    yaw_deg: float = parameter(
+        0.0, unit="deg", meaning="how far it looks to the left of the body's x axis", minimum=-180.0, maximum=180.0
+    )
+    pitch_deg: float = parameter(
+        47.0, unit="deg", meaning="how far it looks below the horizon", minimum=0.0, maximum=90.0
+    )
+
+    @property
+    def T_body_camera(self) -> Pose:
+        """The camera (x right, y down, z forward) in the body that carries it."""
+        return looking(self.position, pitch=np.deg2rad(self.pitch_deg), yaw=np.deg2rad(self.yaw_deg))
+
+
+@parameters
 class RobotDescription:
     """What the simulation must know of a biped beside its MJCF file."""
 
@@ -27,14 +49,11 @@ class RobotDescription:
     sole_length: float = parameter(0.26, unit="m", meaning="sole along x", minimum=0.05, maximum=0.5)
     sole_width: float = parameter(0.138, unit="m", meaning="sole along y", minimum=0.03, maximum=0.3)
     torso_body: str = parameter("torso", unit="1", meaning="body that is kept upright")
-    camera_body: str = parameter("torso", unit="1", meaning="body that carries the depth camera")
-    camera_position: tuple[float, float, float] = parameter(
-        (0.14, 0.0, 0.03), unit="m", meaning="optical centre in that body's frame", minimum=-2.0, maximum=2.0
+    cameras: tuple[CameraMount, ...] = parameter(
+        (CameraMount(),),
+        unit="1",
+        meaning="depth cameras: body, optical centre in its frame [m], view to the left and below the horizon [deg]",
     )
-    camera_pitch_deg: float = parameter(
-        47.0, unit="deg", meaning="how far the camera looks below the horizon", minimum=0.0, maximum=90.0
-    )
-
     lidar_body: str = parameter("torso", unit="1", meaning="body that carries the lidar")
     lidar_position: tuple[float, float, float] = parameter(
         (0.16, 0.0, 0.8), unit="m", meaning="centre of its rays in that body's frame", minimum=-2.0, maximum=2.0
@@ -51,11 +70,6 @@ class RobotDescription:
     def mjcf_path(self) -> Path:
         """Where the MJCF file is; both MuJoCo and pinocchio load it by name."""
         return SHIPPED_ROBOTS / self.mjcf
-
-    @property
-    def T_body_camera(self) -> Pose:
-        """Depth camera (x right, y down, z forward) in the body that carries it."""
-        return looking(self.camera_position, pitch=np.deg2rad(self.camera_pitch_deg))
 
     @property
     def T_body_lidar(self) -> Pose:

@@ -42,7 +42,12 @@ class DepthCameraParameters:
     )
     near: float = parameter(0.1, unit="m", minimum=0.01, maximum=1.0, meaning="nearer depths return nothing")
     far: float = parameter(9.0, unit="m", minimum=1.0, maximum=100.0, meaning="farther depths return nothing")
-    rate: float = parameter(30.0, unit="Hz", minimum=0.1, maximum=200.0, meaning="images a second of robot time")
+    rate: float = parameter(
+        30.0, unit="Hz", minimum=0.1, maximum=200.0, meaning="images a second of the camera that looks where it goes"
+    )
+    rate_elsewhere: float = parameter(
+        5.0, unit="Hz", minimum=0.1, maximum=200.0, meaning="images a second of each of the other cameras"
+    )
     resolution: float = parameter(
         1.0, unit="1", minimum=0.05, maximum=1.0, meaning="share of the columns and rows that are rendered"
     )

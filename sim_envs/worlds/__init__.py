@@ -1,6 +1,7 @@
 """Worlds: a course and a robot on it, which behaviors can drive, look out of, and fall in."""
 
 from sim_envs.worlds.arena import CourseArena
+from sim_envs.worlds.depth_cameras import DepthCameras
 from sim_envs.worlds.falls import FallDetector, FallParameters
 from sim_envs.worlds.kinematic_body import KinematicBody, KinematicParameters
 from sim_envs.worlds.physics_body import PhysicsBody, PhysicsParameters
@@ -10,6 +11,7 @@ from sim_envs.worlds.state_drift import StateDrift, StateDriftParameters
 
 __all__ = [
     "CourseArena",
+    "DepthCameras",
     "FallDetector",
     "FallParameters",
     "KinematicBody",

@@ -50,13 +50,17 @@ class SensorFrames(Generic[Frame]):
         self._snapshot: Snapshot | None = None
         self._rendered: tuple[Snapshot, Frame] | None = None
         self._count = 0
+        self._next = 0  # the earliest time of its rate at which it may measure again
 
     def due(self, time: float) -> bool:
         """Whether the next measurement is due at a robot time [s]."""
-        return time + _EARLY >= self._count / self._sensor.rate
+        return time + _EARLY >= self._next / self._sensor.rate
 
-    def advance(self, time: float, data: mujoco.MjData, T_estimate_world: Pose) -> None:
-        """Note what the world looks like if the next measurement is due at this robot time [s]."""
+    def advance(self, time: float, data: mujoco.MjData, T_estimate_world: Pose, every: int = 1) -> None:
+        """Note what the world looks like if the next measurement is due at this robot time [s].
+
+        After it so many of the sensor's times pass until the next.
+        """
         if not self.due(time):
             return
         T_world_body = Pose(data.xmat[self._body].reshape(3, 3), data.xpos[self._body])
@@ -69,6 +73,12 @@ class SensorFrames(Generic[Frame]):
             T_estimate_world,
         )
         self._count += 1
+        self._next += every
+
+    @property
+    def number(self) -> int | None:
+        """Number of the newest measurement; None before the first."""
+        return None if self._snapshot is None else self._snapshot.number
 
     def newest(self) -> Frame | None:
         """The newest measurement; None before the first."""

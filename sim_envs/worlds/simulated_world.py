@@ -20,7 +20,6 @@ from dm_control import mjcf
 from sim_envs.courses import Course, Ground
 from sim_envs.robot import Biped, RobotDescription
 from sim_envs.sensors import (
-    DepthCamera,
     DepthCameraParameters,
     DepthNoise,
     Lidar,
@@ -30,6 +29,7 @@ from sim_envs.sensors import (
 )
 from sim_envs.worlds.arena import CourseArena
 from sim_envs.worlds.box_motion import BoxMotions
+from sim_envs.worlds.depth_cameras import DepthCameras
 from sim_envs.worlds.falls import FallDetector, FallParameters
 from sim_envs.worlds.kinematic_body import KinematicBody, KinematicParameters
 from sim_envs.worlds.physics_body import PhysicsBody, PhysicsParameters
@@ -44,6 +44,7 @@ from skills.walking import RobotError, RobotModel, Walker, WalkerParameters
 from skills.walking.control_sample import ControlSample
 from skills.walking.walking_state import RobotState, StepEvent, WalkingStatus
 
+_TRAVEL = 0.15  # A robot whose steps lead no farther goes nowhere [m].
 _ROUNDING = 1e-9  # Robot time is a sum of floats; what is due this soon is due now [s].
 
 
@@ -105,12 +106,12 @@ class SimulatedWorld:
         self._arena, self._biped = CourseArena(course), Biped(self.robot)
         self._arena.add_free_entity(self._biped)
         self.physics = mjcf.Physics.from_mjcf_model(self._arena.mjcf_model)
-        body = own_body(self.model, self._index(self._biped.camera_body))
-        self._camera = DepthCamera(
-            self.model, camera or DepthCameraParameters(), noise or DepthNoise(), seed=seed, body=body
+        body = own_body(self.model, self._index(self._biped.pelvis))
+        mounts = list(zip(self.robot.cameras, map(self._index, self._biped.camera_bodies), strict=True))
+        self._cameras = DepthCameras(
+            self.model, mounts, camera or DepthCameraParameters(), noise or DepthNoise(), seed=seed, body=body
         )
         self._lidar = Lidar(self.model, lidar or LidarParameters(), lidar_noise or LidarNoise(), seed=seed, body=body)
-        self._images = SensorFrames(self._camera, self._index(self._biped.camera_body), self.robot.T_body_camera)
         self._scans = SensorFrames(self._lidar, self._index(self._biped.lidar_body), self.robot.T_body_lidar)
 
         self._true_state: RobotState | None = None
@@ -153,9 +154,9 @@ class SimulatedWorld:
         return self._ground
 
     @property
-    def depth_camera(self) -> DepthCamera:
-        """The simulated depth camera."""
-        return self._camera
+    def depth_cameras(self) -> DepthCameras:
+        """The simulated depth cameras."""
+        return self._cameras
 
     @property
     def lidar(self) -> Lidar:
@@ -176,9 +177,13 @@ class SimulatedWorld:
         """What the walking controller is doing; fallen, and why, once it or the world calls it a fall."""
         return self._drift.estimated_status(self._walker.status())
 
-    def depth_image(self) -> DepthImage | None:
-        """The newest depth image, rendered when it is first asked for."""
-        return self._images.newest()
+    def depth_frames(self) -> dict[str, int]:
+        """Id of the newest image of each depth camera that has one."""
+        return self._cameras.frames()
+
+    def depth_image(self, camera: str) -> DepthImage | None:
+        """The newest image of a depth camera, rendered when it is first asked for; None before its first."""
+        return self._cameras.newest(camera)
 
     def lidar_scan(self) -> LidarScan | None:
         """The newest lidar scan, rendered when it is first asked for."""
@@ -252,7 +257,7 @@ class SimulatedWorld:
         self._true_state = None
         self._drift.advance(self.time, self.time - before, self._pelvis)
         self._check_fall()
-        if self._images.due(self.time) or self._scans.due(self.time):
+        if self._cameras.due(self.time) or self._scans.due(self.time):
             self._place_shapes()
             self._look()
 
@@ -295,8 +300,20 @@ class SimulatedWorld:
         mujoco.mj_camlight(self.model, self.physics.data.ptr)
 
     def _look(self) -> None:
-        for frames in (self._images, self._scans):
-            frames.advance(self.time, self.physics.data.ptr, self._drift.T_estimate_world)
+        data, T_estimate_world = self.physics.data.ptr, self._drift.T_estimate_world
+        self._cameras.advance(self.time, data, T_estimate_world, self._travel_yaw())
+        self._scans.advance(self.time, data, T_estimate_world)
+
+    def _travel_yaw(self) -> float:
+        """Where the steps that were sent lead, to the left of where the robot faces [rad]; 0 where nowhere."""
+        status = self._walker.status()
+        stance = status.imminent_stance
+        for step in status.queue:
+            stance = stance.with_sole(step.side, step.T_world_sole)
+        way = stance.mid_feet[:2] - self._pelvis[:2]
+        if np.hypot(*way) < _TRAVEL:
+            return 0.0
+        return float(np.arctan2(way[1], way[0])) - status.imminent_stance.yaw
 
     def _index(self, body: mjcf.Element) -> int:
         bound: Any = self.physics.bind(body)

@@ -80,9 +80,10 @@ class DepthImage:
         camera: intrinsics.
         T_world_camera: estimated camera pose when the frame was taken.
         time: robot time of the frame [s].
-        frame_id: counts frames from 0.
+        frame_id: counts frames from 0; no two of one robot's have the same.
         body_world: parts of the robot that the camera may see, where they were believed to be.
         T_world_odometry: what has been done to these poses since the robot estimated them.
+        camera_name: which of the robot's depth cameras took it.
     """
 
     depth: NDArray[np.float32]
@@ -92,6 +93,7 @@ class DepthImage:
     frame_id: int
     body_world: tuple[Capsule, ...] = ()
     T_world_odometry: Pose = IDENTITY
+    camera_name: str = ""
 
     def __post_init__(self) -> None:
         expected = (self.camera.height, self.camera.width)

@@ -127,7 +127,7 @@ def _seen_through(old: Cells, image: DepthImage, cell: float, same_height: float
     in_view = (points[:, 2] > camera.near) & (u >= 0) & (u < camera.width) & (v >= 0) & (v < camera.height)
     measured = np.where(in_view, image.depth[np.where(in_view, v, 0), np.where(in_view, u, 0)], 0.0)
     # Where the old surface is seen at a slant, its error in height shows as a larger one in depth.
-    behind = measured > points[:, 2] + 2.0 * same_height
+    behind = in_view & (measured > points[:, 2] + 2.0 * same_height)
     if np.mean(image.depth[::_SPARSE, ::_SPARSE] > 0.0) > _BLIND:
         # A pit returns nothing where ground would.
         behind |= in_view & (measured == 0.0)

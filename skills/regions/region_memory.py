@@ -11,8 +11,9 @@ around the soles, because a first step must land between them and what the camer
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, replace
-from typing import NamedTuple, Protocol
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -25,7 +26,7 @@ from skills.regions.height_reference import HeightReference, updated
 from skills.regions.memory_parameters import MemoryParameters
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 from skills.regions.region_cells import Cells, Window, cells_of, hold
-from skills.regions.registration import Drift, camera_to_correct, register
+from skills.regions.registration import Corrections, Drift, camera_to_correct, register
 from skills.regions.registration_parameters import RegistrationParameters
 
 
@@ -82,10 +83,26 @@ class RegionMemory:
     update: GroundUpdate | None = None
     kept: tuple[Remembered, ...] = ()
     T_world_map: Pose = IDENTITY
-    T_world_key: Pose | None = None
     start: Stance | None = None
     reference: HeightReference | None = None
-    camera_error: CameraError = NO_ERROR
+    cameras: Mapping[str, CameraMemory] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CameraMemory:
+    """What is remembered of one camera.
+
+    Attributes:
+        drift: how its newest frame lay to the ground; None before its first.
+        T_world_key: where it was when it took the newest of its frames that are kept; None before the first.
+        error: what of its error has been made good.
+        since: what frames of other cameras have corrected since its newest.
+    """
+
+    drift: Drift | None = None
+    T_world_key: Pose | None = None
+    error: CameraError = NO_ERROR
+    since: Corrections = field(default_factory=Corrections)
 
 
 class Sole(Protocol):
@@ -135,33 +152,53 @@ def remember(
         image: the frame; it tells where the camera is, and through which old regions it sees.
         parameters: numbers.
     """
-    if memory.camera_error is not NO_ERROR:
-        regions = memory.camera_error.regions_corrected(regions, image.T_world_camera)
-        image = memory.camera_error.image_corrected(image)
+    camera = memory.cameras.get(image.camera_name, CameraMemory())
+    if camera.error is not NO_ERROR:
+        regions = camera.error.regions_corrected(regions, image.T_world_camera)
+        image = camera.error.image_corrected(image)
     if memory.T_world_map is not IDENTITY:
         T_map_world = memory.T_world_map.inverse
         regions, stance, image = regions.moved(T_map_world), stance.moved(T_map_world), image.moved(T_map_world)
-    before = None if memory.update is None else memory.update.drift
-    drift = register(regions, image, memory.reference, before, memory.camera_error, parameters.registration)
+    drift = register(
+        regions, image, memory.reference, camera.drift, camera.since, camera.error, parameters.registration
+    )
     T = drift.T_world_frame
     if T is not IDENTITY:
         regions, stance, image = regions.moved(T), stance.moved(T), image.moved(T)
     joined = _slid(_Frame(memory, regions, stance, image, parameters).joined(drift), drift)
+    joined = replace(joined, cameras=_after(joined.cameras, image.camera_name, drift))
     error = camera_to_correct(drift, parameters.registration)
-    return joined if error is None else _put_right(joined, image.T_world_camera, error, parameters)
+    return joined if error is None else _put_right(joined, image, error, parameters)
 
 
-def _put_right(memory: RegionMemory, T_map_camera: Pose, error: CameraError, parameters: MapParameters) -> RegionMemory:
-    """The map as it would be had the camera's error been made good all along; the ground follows with the next frame.
+def _after(cameras: Mapping[str, CameraMemory], name: str, drift: Drift) -> Mapping[str, CameraMemory]:
+    """What is remembered of all cameras after a frame of one of them."""
+    others = {other: replace(camera, since=camera.since.then(drift)) for other, camera in cameras.items()}
+    camera = cameras.get(name, CameraMemory())
+    return {**others, name: CameraMemory(drift, camera.T_world_key, camera.error)}
 
-    Frames have been brought onto the newest, so what is wrong with all of them is what is wrong with its camera.
+
+def _put_right(memory: RegionMemory, image: DepthImage, error: CameraError, parameters: MapParameters) -> RegionMemory:
+    """The map as it would be had a camera's error been made good all along; the ground follows with the next frame.
+
+    Its frames have been brought onto its newest, so what is wrong with all of them is what is wrong with the camera.
     """
-    left, cell = error.less(memory.camera_error), parameters.registration.cell
-    regions = tuple(left.region_corrected(remembered.region, T_map_camera) for remembered in memory.kept)
+    name, T_map_camera = image.camera_name, image.T_world_camera
+    camera, cell = memory.cameras[name], parameters.registration.cell
+    left = error.less(camera.error)
+    regions = tuple(
+        left.region_corrected(remembered.region, T_map_camera) if remembered.camera == name else remembered.region
+        for remembered in memory.kept
+    )
     cells = cells_of(regions, cell)
-    kept = tuple(Remembered(region, cells.of(k)) for k, region in enumerate(regions))
-    reference = updated(None, cells, T_map_camera.p, parameters.registration)
-    return replace(memory, kept=kept, reference=reference, camera_error=error)
+    kept = tuple(
+        replace(remembered, region=region, cells=cells.of(k))
+        for k, (region, remembered) in enumerate(zip(regions, memory.kept, strict=True))
+    )
+    lasting = Cells.joined([remembered.cells for remembered in kept if not remembered.passing])
+    reference = updated(None, lasting, T_map_camera.p, parameters.registration)
+    cameras = {**memory.cameras, name: replace(camera, error=error)}
+    return replace(memory, kept=kept, reference=reference, cameras=cameras)
 
 
 def _slid(memory: RegionMemory, drift: Drift) -> RegionMemory:
@@ -192,6 +229,7 @@ class _Frame:
         self._memory, self._regions, self._stance, self._image = memory, regions, stance, image
         self._parameters = parameters.memory
         self._all_parameters = parameters
+        self._camera = memory.cameras.get(image.camera_name, CameraMemory())
         self._start = memory.start or stance
         self._is_key = self._moved_on(image.T_world_camera)
 
@@ -206,16 +244,20 @@ class _Frame:
         ground = PlanarRegions((*supports, *known), now, self._regions.frame_id)
         change = GroundUpdate(forgotten, drift, self._image.T_world_odometry)
         memory = replace(self._memory, ground=ground, update=change, kept=kept, start=self._start)
-        if not self._is_key:
+        name, passing = self._image.camera_name, not self._is_key
+        fresh = (Remembered(r, newest.of(i), name, passing) for i, r in enumerate(self._regions.regions))
+        memory = replace(memory, kept=(*kept, *fresh))
+        if passing:
             return memory
         T_world_camera = self._image.T_world_camera
-        fresh = tuple(Remembered(region, newest.of(i)) for i, region in enumerate(self._regions.regions))
         reference = updated(self._memory.reference, newest, T_world_camera.p, registration)
-        return replace(memory, kept=(*kept, *fresh), T_world_key=T_world_camera, reference=reference)
+        cameras = {**memory.cameras, name: replace(self._camera, T_world_key=T_world_camera)}
+        return replace(memory, cameras=cameras, reference=reference)
 
     def _remember(self, newest: Cells) -> tuple[tuple[Remembered, ...], tuple[Forgotten, ...]]:
         """The old regions that still hold, and the others."""
-        old, cell = self._memory.kept, self._all_parameters.registration.cell
+        name, cell = self._image.camera_name, self._all_parameters.registration.cell
+        old = [remembered for remembered in self._memory.kept if not remembered.passed_with(name)]
         reasons = judge_regions(
             Cells.joined([remembered.cells for remembered in old]),
             newest,
@@ -230,10 +272,10 @@ class _Frame:
         return tuple(remembered for remembered, reason in judged if not reason), forgotten
 
     def _moved_on(self, T_world_camera: Pose) -> bool:
-        """Whether the camera has moved since the last frame that was kept."""
-        if self._memory.T_world_key is None:
+        """Whether the camera has moved since the last of its frames that was kept."""
+        if self._camera.T_world_key is None:
             return True
-        T_key_camera = self._memory.T_world_key.inverse @ T_world_camera
+        T_key_camera = self._camera.T_world_key.inverse @ T_world_camera
         angle = np.arccos(np.clip(0.5 * (np.trace(T_key_camera.R) - 1.0), -1.0, 1.0))
         moved = np.linalg.norm(T_key_camera.p) >= self._parameters.key_distance
         return bool(moved or angle >= self._parameters.key_angle)
@@ -258,8 +300,22 @@ class _Frame:
         return self._all_parameters.sole_length, self._all_parameters.sole_width
 
 
-class Remembered(NamedTuple):
-    """A region and its cells, which are found once."""
+@dataclass(frozen=True, slots=True, eq=False)
+class Remembered:
+    """A region that is in the map.
+
+    Attributes:
+        region: the region.
+        cells: what it covers, which is found once.
+        camera: which camera has seen it.
+        passing: whether it goes with the camera's next frame, because its own is not kept.
+    """
 
     region: PlanarRegion
     cells: Cells
+    camera: str
+    passing: bool
+
+    def passed_with(self, camera: str) -> bool:
+        """Whether it is gone when this camera has taken another frame."""
+        return self.passing and self.camera == camera

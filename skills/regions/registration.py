@@ -10,7 +10,7 @@ a camera mounted askew makes of the robot's own motion is told from drift, and i
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import cv2
 import numpy as np
@@ -71,11 +71,29 @@ class Drift:
             object.__setattr__(self, name, readonly(getattr(self, name), (count,)))
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Corrections:
+    """What several frames have corrected, one after the other.
+
+    Attributes:
+        T_world: what they have moved all later frames by.
+        apparent_world: the part of it that their cameras are to blame for, (3,) [m].
+    """
+
+    T_world: Pose = IDENTITY
+    apparent_world: Array = field(default_factory=lambda: np.zeros(3))
+
+    def then(self, drift: Drift) -> Corrections:
+        """With one more frame."""
+        return Corrections(drift.T_world_frame @ self.T_world, self.apparent_world + drift.apparent_world)
+
+
 def register(
     regions: PlanarRegions,
     image: DepthImage,
     reference: HeightReference | None,
     before: Drift | None,
+    since: Corrections,
     corrected: CameraError,
     parameters: RegistrationParameters,
 ) -> Drift:
@@ -85,7 +103,8 @@ def register(
         regions: of the frame.
         image: the frame; it tells where the camera was believed to be.
         reference: the ground known before; None where there is none.
-        before: the drift of the frame before.
+        before: the drift of the camera's frame before; None where this is its first.
+        since: what frames of other cameras have corrected since then.
         corrected: what has been made good in the frame.
         parameters: how far to trust the frame.
     """
@@ -93,23 +112,26 @@ def register(
     if reference is None or before is None:
         unknown, still = ApparentMotion.unknown(), np.zeros(4)
         reason = "no ground is known yet"
-        return Drift(IDENTITY, still, np.zeros(3), unknown, corrected, 0.0, image.time, camera, 0.0, reason)
+        before = Drift(IDENTITY, still, np.zeros(3), unknown, corrected, 0.0, image.time, camera, 0.0, reason)
+    if reference is None:
+        return before
     dt = image.time - before.time
     moved = image.T_world_odometry.R @ (camera - before.camera_odometry)
     causes = causes_of(dt, moved, image.T_world_camera.R)
     made_good = causes[:, 3:] @ corrected.vector
     expected = causes @ before.motion.estimate - made_good
-    predicted = np.append(T_RASTER_WORLD.R @ expected, before.turn_rate * dt)
     window = _window_of(regions, image, parameters)
+    known_already = _as_shift_turn(since.T_world, window)
+    predicted = np.append(T_RASTER_WORLD.R @ expected, before.turn_rate * dt) - known_already
     newest, known = window.paint(cells_of(regions.regions, parameters.cell)), reference.cut(window)
     found, overlap, reason = _fit(newest, known, window, predicted, parameters)
     kept = float(np.exp(-dt / parameters.rate_memory))
     surprise = found - predicted
-    steady = not reason and bool(np.abs(surprise).max() < _STEADY)
+    steady = not reason and dt > 0.0 and bool(np.abs(surprise).max() < _STEADY)
     turn_rate = kept * before.turn_rate + parameters.rate_gain * steady * float(surprise[3]) / max(dt, _SHORTEST)
-    seen = T_RASTER_WORLD.R.T @ found[:3] + made_good
+    seen = T_RASTER_WORLD.R.T @ (found[:3] + known_already[:3]) + made_good
     motion = before.motion.learned(causes, seen, float(steady), kept, parameters)
-    apparent = shift_by(motion.camera.less(corrected), causes, parameters)
+    apparent = shift_by(motion.camera.less(corrected), causes, parameters) - since.apparent_world
     T_world_frame = _as_pose(found, window)
     return Drift(T_world_frame, found, apparent, motion, corrected, turn_rate, image.time, camera, overlap, reason)
 
@@ -176,6 +198,15 @@ def _as_pose(shift_turn: Array, window: Window) -> Pose:
     R, middle = rotation_z(shift_turn[3]), window.middle
     T_raster = Pose(R, middle - R @ middle + shift_turn[:3])
     return T_RASTER_WORLD.inverse @ T_raster @ T_RASTER_WORLD
+
+
+def _as_shift_turn(T_world: Pose, window: Window) -> Array:
+    """The shift of the middle of the window and the turn that are a pose, (4,)."""
+    if T_world is IDENTITY:
+        return np.zeros(4)
+    T_raster = T_RASTER_WORLD @ T_world @ T_RASTER_WORLD.inverse
+    middle = window.middle
+    return np.append(T_raster @ middle - middle, T_raster.yaw)
 
 
 def camera_to_correct(drift: Drift, parameters: RegistrationParameters) -> CameraError | None:

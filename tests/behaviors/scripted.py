@@ -33,7 +33,10 @@ class ScriptedRobot:
     def status(self) -> WalkingStatus:
         return WalkingStatus(WalkingPhase.STANDING, 0.0, 0.0, None, (), self._stance(), None, False)
 
-    def depth_image(self) -> None:
+    def depth_frames(self) -> dict[str, int]:
+        return {}
+
+    def depth_image(self, camera: str) -> None:
         return None
 
     def lidar_scan(self) -> None:

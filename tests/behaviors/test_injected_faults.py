@@ -27,7 +27,10 @@ class SeeingRobot(ScriptedRobot):
     def frame(self) -> int:
         return round(self.time * 10.0)
 
-    def depth_image(self) -> DepthImage:  # type: ignore[override]
+    def depth_frames(self) -> dict[str, int]:
+        return {"front": self.frame}
+
+    def depth_image(self, camera: str) -> DepthImage:  # type: ignore[override]
         depth = np.full((30, 40), 1.0 + self.frame, dtype=np.float32)
         return DepthImage(depth, CAMERA, Pose.identity(), self.frame / 10.0, self.frame)
 
@@ -44,7 +47,7 @@ def seen(mode: FaultMode, sensor: str = "depth", **options: Any) -> list[tuple[i
     for index in range(10):
         robot.time = index / 10.0
         if sensor == "depth":
-            image = faulty.depth_image()
+            image = faulty.depth_image("front")
             assert image is not None
             frames.append((image.frame_id, float(np.nanmax(image.depth)) - 1.0))
         else:
@@ -87,8 +90,8 @@ def test_some_frames_are_lost_and_always_the_same_ones_while_a_sensor_is_intermi
 def test_a_share_of_the_pixels_is_not_a_number():
     robot = SeeingRobot()
     faulty = FaultyRobot(robot, [Fault("sensor:depth", FaultMode.NAN, share=0.25)])
-    image = faulty.depth_image()
-    assert image is not None and faulty.depth_image() is image
+    image = faulty.depth_image("front")
+    assert image is not None and faulty.depth_image("front") is image
     assert np.isnan(image.depth).mean() == pytest.approx(0.25, abs=0.05)
 
 
@@ -96,7 +99,7 @@ def test_a_share_of_the_pixels_is_not_a_number():
 def test_reading_raises_and_a_tree_stops_safely(sensor: str):
     robot = SeeingRobot()
     faulty = FaultyRobot(robot, [Fault(f"sensor:{sensor}", FaultMode.EXCEPTION, start=0.05)])
-    read = {"depth": faulty.depth_image, "lidar": faulty.lidar_scan, "state": faulty.state, "status": faulty.status}
+    read = {"depth": faulty.depth_frames, "lidar": faulty.lidar_scan, "state": faulty.state, "status": faulty.status}
     read[sensor]()
     robot.time = 0.1
     with pytest.raises(InjectedFaultError):

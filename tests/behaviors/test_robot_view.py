@@ -41,7 +41,7 @@ def test_state_status_events_and_images_are_moved_into_the_world():
     assert current is not None
     np.testing.assert_allclose(current.T_world_sole.p, (T @ step(2).T_world_sole).p)
     np.testing.assert_allclose(view.events[0].T_world_sole.p, (T @ step(0).T_world_sole).p)
-    image, estimated = view.depth_image(), robot.depth_image()
+    image, estimated = view.depth_image("front"), robot.depth_image("front")
     assert image is not None and estimated is not None
     np.testing.assert_allclose(image.T_world_camera.p, (T @ estimated.T_world_camera).p)
     np.testing.assert_allclose(image.T_world_odometry.p, T.p)

@@ -71,10 +71,10 @@ def test_limits_of_a_fall_are_the_shipped_ones():
 
 def test_the_camera_and_the_look_ahead_are_the_shipped_ones():
     configuration = load_configuration()
-    camera, robot, sub_goal = configuration.camera, configuration.robot, configuration.sub_goal
+    camera, sub_goal, (mount,) = configuration.camera, configuration.sub_goal, configuration.robot.cameras
     flowing = " ".join(PAGE.split())
     for text in (
-        f"{camera.rate:.0f} frames a second from the {robot.camera_body}, {robot.camera_pitch_deg:.0f} degrees below",
+        f"{camera.rate:.0f} frames a second from the {mount.body}, {mount.pitch_deg:.0f} degrees below",
         f"{camera.width} x {camera.height} pixels, {camera.horizontal_fov_deg:.0f} x {camera.vertical_fov_deg:.0f}",
         f"{sub_goal.ahead:g} m ahead along the body path, {sub_goal.ahead_in_curve:g} m in tight curves",
     ):

@@ -28,12 +28,16 @@ def test_recording_shows_robot_course_regions_steps_and_goal(chunks):
         "/world/path",
         "/world/sub_goal",
         "/world/goal",
-        "/world/camera",
+        "/world/camera/front",
     }
 
 
 def test_recording_shows_what_the_camera_saw_and_what_became_of_it(chunks):
-    assert entities(chunks) >= {"/camera/depth", "/camera/regions", "/camera/rejected", "/noise/own", "/noise/shared"}
+    assert entities(chunks) >= {
+        *(f"/camera/front/{name}" for name in ("depth", "regions", "rejected")),
+        "/noise/own",
+        "/noise/shared",
+    }
 
 
 def test_recording_shows_the_heights_around_and_what_the_map_forgot(chunks):

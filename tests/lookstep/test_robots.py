@@ -52,7 +52,10 @@ def test_the_courier_looks_plans_and_steps():
 @pytest.mark.parametrize(
     ("assignment", "told"),
     (
-        ("robot.camera_body=neck", "camera_body: got 'neck', the bodies of atlas_class.xml are pelvis,"),
+        (
+            "robot.cameras=[{name: front, body: neck}]",
+            "camera front: got 'neck', the bodies of atlas_class.xml are pelvis,",
+        ),
         ("robot.torso_body=neck", "there is no body 'neck' for the torso"),
         ("walking.posture=[[tail, 0.1]]", "posture: got joint 'tail', the robot has left_hip_yaw,"),
         ("robot.mjcf=nowhere.xml", "nowhere.xml: there is no such MJCF file"),

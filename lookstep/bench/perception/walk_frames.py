@@ -12,6 +12,7 @@ from sim_envs.sensors import DepthCamera, Lidar, Snapshot
 from skills.footsteps.footstep import Stance
 from skills.geometry.pose import Array, Pose
 
+_CAMERA = "front"
 _TOGETHER = 1e-6  # Sensors that fired this close to one another saw the same [s].
 
 
@@ -48,7 +49,7 @@ def walk_frames(count: int, duration: float, seed: int, progress: Progress) -> W
     every = max(len(watcher.frames) / count, 1.0)
     chosen = tuple(watcher.frames[int(k * every)] for k in range(min(count, len(watcher.frames))))
     world = watcher.last.world
-    return WalkFrames(chosen, world.depth_camera, world.lidar, world.course.goal, seed)
+    return WalkFrames(chosen, world.depth_cameras[_CAMERA], world.lidar, world.course.goal, seed)
 
 
 class _Watcher:
@@ -68,7 +69,7 @@ class _Watcher:
         scan = moment.world.lidar_scan()
         if scan is None or moment.time - scan.time > _TOGETHER:
             return
-        image = moment.world.depth_image()
+        image = moment.world.depth_image(_CAMERA)
         if image is None or moment.time - image.time > _TOGETHER:
             return
         poses = moment.world.geom_poses()

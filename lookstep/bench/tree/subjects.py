@@ -143,7 +143,11 @@ class StandingRobot:
         """Standing."""
         return self._status
 
-    def depth_image(self) -> None:
+    def depth_frames(self) -> dict[str, int]:
+        """None."""
+        return {}
+
+    def depth_image(self, camera: str) -> None:
         """Nothing."""
 
     def lidar_scan(self) -> None:

@@ -91,7 +91,10 @@ class WalkingRobot:
     def status(self) -> WalkingStatus:
         return self._status
 
-    def depth_image(self) -> DepthImage | None:
+    def depth_frames(self) -> dict[str, int]:
+        return {} if self.frame_id is None else {"front": self.frame_id}
+
+    def depth_image(self, camera: str) -> DepthImage | None:
         if self.frame_id is None:
             return None
         T_world_camera = Pose.from_xyz_rpy((0.0, 0.0, 1.0))

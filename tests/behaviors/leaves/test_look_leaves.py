@@ -8,9 +8,11 @@ from scripted_walk import PARAMETERS, WalkingRobot, feet_at, ground, status_and_
 
 from behaviors import Status, Tree, parse_tree
 from behaviors.leaves import look
-from skills.geometry import DepthImage
+from skills.geometry import DepthImage, PinholeCamera, Pose
 from skills.regions import NoiseLevel, PlanarRegions, RegionExtraction, RegionParameters
 
+CAMERA = PinholeCamera(4, 3, 2.0, 2.0, 1.5, 1.0)
+camera_pose = Pose.from_xyz_rpy((0.0, 0.0, 1.0))
 LOOK = """
 tree: look
 root:
@@ -66,6 +68,27 @@ def test_an_image_that_comes_while_another_is_examined_is_taken_next(tree, looke
         tick(tree)
     assert [image.frame_id for image in looked_at] == sorted({image.frame_id for image in looked_at})
     assert 1 < len(looked_at) < 10, "images that came meanwhile are passed over, but not the newest"
+
+
+def test_cameras_are_looked_through_as_often_as_they_take_images(tree, looked_at, monkeypatch):
+    robot = tree.context.robot.robot
+    rates = {"front": 30.0, "rear": 5.0, "left": 5.0}
+    monkeypatch.setattr(
+        robot, "depth_frames", lambda: {name: round(robot.time * rate + 0.499) for name, rate in rates.items()}
+    )
+
+    def image(camera: str) -> DepthImage:
+        depth = np.zeros((3, 4), dtype=np.float32)
+        frame = robot.depth_frames()[camera]
+        return DepthImage(depth, CAMERA, camera_pose, robot.time, frame, camera_name=camera)
+
+    monkeypatch.setattr(robot, "depth_image", image)
+    tick(tree, 1000)
+    names = [image.camera_name for image in looked_at]
+    assert names[:3] == ["front", "rear", "left"], "each once, before any is looked through again"
+    shares = {name: names.count(name) / len(names) for name in rates}
+    assert 0.55 < shares["front"] < 0.8, "three quarters of the images are its own"
+    assert shares["rear"] == pytest.approx(shares["left"], abs=0.01)
 
 
 def test_the_map_holds_what_was_seen_and_is_as_new_as_the_image(tree, looked_at):

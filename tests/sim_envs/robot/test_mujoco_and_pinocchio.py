@@ -8,7 +8,14 @@ import pinocchio as pin  # pyright: ignore[reportMissingImports]
 import pytest
 from dm_control import composer, mjcf
 
-from sim_envs.robot import Biped, RobotDescription, pelvis_pose, qpos_from_configuration, qvel_from_velocity
+from sim_envs.robot import (
+    Biped,
+    CameraMount,
+    RobotDescription,
+    pelvis_pose,
+    qpos_from_configuration,
+    qvel_from_velocity,
+)
 from skills.geometry.pose import Pose
 
 _SAMPLES = 100
@@ -129,8 +136,8 @@ def test_depth_camera_looks_47_degrees_below_the_horizon_from_above_one_metre(mo
     physics.reset()
     mj_data.qpos[2] = _WALKING_PELVIS_HEIGHT
     physics.forward()
-    camera, body = mj_data.camera("atlas_class/depth"), mj_data.body("atlas_class/torso")
-    T_world_camera = Pose(body.xmat.reshape(3, 3), body.xpos) @ description.T_body_camera
+    camera, body = mj_data.camera("atlas_class/front"), mj_data.body("atlas_class/torso")
+    T_world_camera = Pose(body.xmat.reshape(3, 3), body.xpos) @ description.cameras[0].T_body_camera
     np.testing.assert_allclose(camera.xpos, T_world_camera.p, atol=1e-12)
     # MuJoCo: x right, y up, -z forward.
     np.testing.assert_allclose(camera.xmat.reshape(3, 3) * (1, -1, -1), T_world_camera.R, atol=1e-12)
@@ -148,5 +155,11 @@ def test_shapes_are_either_seen_or_touch(models):
 
 
 def test_a_camera_on_an_unknown_body_is_refused_by_name():
-    with pytest.raises(ValueError, match=r"camera_body: got 'neck'"):
-        Biped(RobotDescription(camera_body="neck"))
+    with pytest.raises(ValueError, match=r"camera front: got 'neck'"):
+        Biped(RobotDescription(cameras=(CameraMount(body="neck"),)))
+
+
+@pytest.mark.parametrize("cameras", [(), (CameraMount(), CameraMount(yaw_deg=180.0))])
+def test_no_camera_and_two_of_one_name_are_refused(cameras):
+    with pytest.raises(ValueError, match="needs at least one, each once"):
+        Biped(RobotDescription(cameras=cameras))

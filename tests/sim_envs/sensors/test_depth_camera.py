@@ -39,8 +39,8 @@ def standing_robot():
         for joint, angle in joints.items():
             data.joint(f"{prefix}{side}_{joint}").qpos[0] = angle
     mujoco.mj_forward(model, data)
-    body = data.body(f"{prefix}{robot.description.camera_body}")
-    T_world_camera = Pose(body.xmat.reshape(3, 3), body.xpos) @ robot.description.T_body_camera
+    body = data.body(f"{prefix}{robot.description.cameras[0].body}")
+    T_world_camera = Pose(body.xmat.reshape(3, 3), body.xpos) @ robot.description.cameras[0].T_body_camera
     return model, data, data.geom_xpos.copy(), data.geom_xmat.reshape(-1, 3, 3).copy(), T_world_camera
 
 

@@ -91,7 +91,10 @@ def test_scans_and_their_body_follow_the_estimate():
     for it in (believed, true):
         it.advance(1.0)
     T = believed.state().T_world_pelvis @ true.state().T_world_pelvis.inverse
-    for estimate, truth in ((believed.lidar_scan(), true.lidar_scan()), (believed.depth_image(), true.depth_image())):
+    for estimate, truth in (
+        (believed.lidar_scan(), true.lidar_scan()),
+        (believed.depth_image("front"), true.depth_image("front")),
+    ):
         assert estimate is not None and truth is not None
         for one, other in zip(estimate.body_world, truth.body_world, strict=True):
             np.testing.assert_allclose(one.start_world, T @ other.start_world, atol=1e-9)
@@ -123,7 +126,7 @@ def walking_views():
     views = []
     for _ in range(16):
         it.advance(0.17)
-        views.append((it.geom_poses(), it.depth_image(), it.lidar_scan()))
+        views.append((it.geom_poses(), it.depth_image("front"), it.lidar_scan()))
     return it, views
 
 
@@ -135,7 +138,7 @@ def is_robot(it, geoms):
 
 def test_every_pixel_of_the_robot_lies_in_its_capsules_and_hardly_one_of_the_ground(walking_views):
     it, views = walking_views
-    mesh = it.depth_camera.mesh
+    mesh = it.depth_cameras["front"].mesh
     seen, blinded = 0, 0
     for (positions, rotations), image, _ in views:
         raster = rasterize_faces(mesh, positions, rotations, image.camera, image.T_world_camera)

@@ -76,34 +76,34 @@ def test_robot_time_runs_by_whole_control_steps_and_loses_nothing():
 
 def test_frames_come_by_robot_time_and_do_not_depend_on_which_are_read():
     read, unread = world(seed=3), world(seed=3)
-    first = read.depth_image()
+    first = read.depth_image("front")
     assert first is not None
     assert (first.frame_id, first.time) == (0, 0.0)
     for _ in range(10):
         read.advance(0.1)
-        image = read.depth_image()
-        assert image is read.depth_image()
+        image = read.depth_image("front")
+        assert image is read.depth_image("front")
     unread.advance(1.0)
-    last, same = read.depth_image(), unread.depth_image()
+    last, same = read.depth_image("front"), unread.depth_image("front")
     assert last is not None and same is not None
     assert last.frame_id == same.frame_id == 30
     np.testing.assert_array_equal(last.depth, same.depth)
     other = world(seed=4)
     other.advance(1.0)
-    different = other.depth_image()
+    different = other.depth_image("front")
     assert different is not None
     assert np.any(different.depth != last.depth)
 
 
 def test_an_image_shows_the_ground_where_it_is_and_the_robots_own_swinging_leg():
     it = world()
-    standing = _seen_heights(it.depth_image())
+    standing = _seen_heights(it.depth_image("front"))
     np.testing.assert_allclose(standing, 0.0, atol=0.03)
     it.send_footsteps(steps(4))
     seen = []
     for _ in range(12):
         it.advance(0.2)
-        seen.append(_seen_heights(it.depth_image()))
+        seen.append(_seen_heights(it.depth_image("front")))
     assert np.mean(np.concatenate(seen) > 0.2) > 0.002
 
 
@@ -118,7 +118,7 @@ def test_equal_seeds_walk_and_see_to_the_last_bit_alike():
     for _ in range(2):
         it = world(seed=7)
         _walk(it, steps(4), 2.5)
-        image = it.depth_image()
+        image = it.depth_image("front")
         assert image is not None
         ends.append((it.physics.data.ptr.qpos.copy(), image.depth, it.state().dcm_world))
     for first, second in zip(*ends, strict=True):
@@ -204,10 +204,10 @@ def test_a_drifting_estimate_leaves_the_truth_and_commands_follow_the_estimate()
     true, estimated = it.true_state(), it.state()
     assert estimated.T_world_pelvis.p[0] - true.T_world_pelvis.p[0] == pytest.approx(0.02, abs=1e-3)
     assert estimated.T_world_pelvis.yaw - true.T_world_pelvis.yaw == pytest.approx(0.1)
-    image = it.depth_image()
+    image = it.depth_image("front")
     assert image is not None
     p_pelvis_camera = estimated.T_world_pelvis.inverse @ image.T_world_camera.p
-    true_camera = it.physics.data.ptr.camera("atlas_class/depth").xpos
+    true_camera = it.physics.data.ptr.camera("atlas_class/front").xpos
     np.testing.assert_allclose(p_pelvis_camera, true.T_world_pelvis.inverse @ true_camera, atol=1e-9)
 
     # A step to where the robot believes its left foot to be leaves the foot where it truly is.

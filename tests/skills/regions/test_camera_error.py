@@ -75,17 +75,17 @@ def test_a_map_is_put_right_as_soon_as_the_error_is_sure(correct):
     stance = Stance(Pose.from_xyz_rpy((0.0, 0.12, 0.0)), Pose.from_xyz_rpy((0.0, -0.12, 0.0)))
     parameters = MapParameters(MemoryParameters(), RegistrationParameters(correct_camera=correct), 0.26, 0.138)
     memory = remember(RegionMemory(), found, stance, askew, parameters)
-    assert memory.camera_error is NO_ERROR, "nothing is known of it yet"
+    assert memory.cameras[""].error is NO_ERROR, "nothing is known of it yet"
     # As after a walk that has shown the error.
     information = np.diag(np.full(7, 1e12))
     estimate = np.concatenate((np.zeros(3), ERROR.vector))
     assert memory.update is not None
     drift = replace(memory.update.drift, motion=ApparentMotion(information, information @ estimate, estimate))
-    memory = replace(memory, update=replace(memory.update, drift=drift))
+    memory = replace(memory, cameras={"": replace(memory.cameras[""], drift=drift)})
     for _ in range(2):
         memory = remember(memory, found, stance, askew, parameters)
     assert memory.ground is not None
     seen = [region for region in memory.ground.regions if region.area > 0.2][-2:]
     error = np.abs(planes(PlanarRegions(tuple(seen), 0.0, 0)) - wanted).max()
     assert error < 1e-3 if correct else error > 0.01
-    np.testing.assert_allclose(memory.camera_error.vector, ERROR.vector if correct else 0.0, atol=1e-6)
+    np.testing.assert_allclose(memory.cameras[""].error.vector, ERROR.vector if correct else 0.0, atol=1e-6)
