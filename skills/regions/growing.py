@@ -40,7 +40,7 @@ class PatchRegions:
 
 def grow_regions(patches: Patches, parameters: RegionParameters, patches_min: int) -> PatchRegions:
     """Join patches into regions of no fewer than so many."""
-    p, pixels = parameters, patches.size**2
+    p, pixels = parameters, patches.pixels
     labels = np.full(patches.sigma.shape, -1, dtype=np.int32)
     order = _flattest_first(patches.sigma)
     capacity = labels.size // patches_min + 1

@@ -24,7 +24,8 @@ SUMS = 10
 N, X, Y, W, XX, XY, YY, XW, YW, WW = range(SUMS)
 FACET = 9
 _STRETCH = 32  # windows of a row that are fitted together, where one of them has enough pixels
-_FILLED_MIN = 0.25  # patches with a smaller share of valid pixels get no plane
+_FILLED_MIN = 0.25  # patches with a smaller share of the usual number of valid pixels get no plane
+_PIXELS_MIN = 4.0  # fewer in a patch are too few, however usual they are
 _ROUND_MIN = 2.5e-4  # least determinant over squared trace of the spread of pixels that carry a plane
 
 
@@ -37,6 +38,7 @@ class Patches:
     Attributes:
         size: edge of a patch [px].
         edge: the same as a length at depth 1 [1].
+        pixels: how many valid pixels a patch usually has; fewer than its size says where many are lost all over.
         sums: sums over the valid pixels of each patch, (rows, columns, 10).
         facets: plane and mean point of each patch in the camera frame, (rows, columns, 9): unit normal away from the
             camera, distance of the plane, mean point, how far noise may move the mean and turn the plane [1, m, m, m,
@@ -47,6 +49,7 @@ class Patches:
 
     size: int
     edge: float
+    pixels: float
     sums: Array
     facets: Array
     sigma: Array
@@ -68,7 +71,8 @@ def fit_patches(image: DepthImage, parameters: RegionParameters, noise: NoiseLev
     sum_patches(image.depth, intrinsics(camera), camera.near, far, size, work[:6].reshape(-1), work[6], sums)
     edge = float(size / np.sqrt(camera.fx * camera.fy))
     nothing = np.empty((0, 0, 0))
-    patches = Patches(size, edge, sums, nothing, nothing, noise or estimate_noise(sums, size**2))
+    pixels = _usual_pixels(sums, size)
+    patches = Patches(size, edge, pixels, sums, nothing, nothing, noise or estimate_noise(sums, pixels))
     return fit_facets(patches, sums, parameters)
 
 
@@ -80,10 +84,17 @@ def fit_facets(patches: Patches, sums: Array, parameters: RegionParameters, face
     limits = np.array((parameters.noise_factor, parameters.pixel_offset, parameters.grow_offset))
     fits, down, best = np.empty((3, rows, columns)), np.empty((10, columns)), np.empty((2, columns))
     spread = np.full((rows + 2, columns + 2), np.inf)  # with a border
-    law, pixels = patches.noise.law, patches.size**2
+    law, pixels = patches.noise.law, patches.pixels
     filled = np.ascontiguousarray(sums[:, :, 0])
     _fit_facets(filled, sums, law, pixels, patches.edge, limits, fits, spread, down, best[0], best[1], facets, sigma)
     return replace(patches, sums=sums, facets=facets, sigma=sigma)
+
+
+def _usual_pixels(sums: Array, size: int) -> float:
+    """Median of the valid pixels of those patches that have any."""
+    counts = sums[:, :, N]
+    counts = counts[counts > 0.0]
+    return max(float(np.median(counts)), _PIXELS_MIN) if len(counts) else float(size**2)
 
 
 def patch_size(camera: PinholeCamera, parameters: RegionParameters) -> int:

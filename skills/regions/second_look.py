@@ -78,7 +78,7 @@ def look_again(
         parameters.merge_offset,
         parameters.noise_factor,
         patches.noise.law,
-        patches.size**2,
+        patches.pixels,
         sums,
         planes,
         known,
@@ -138,7 +138,7 @@ def _second(
     _sum_left(image.depth, half, allowed, intrinsics(camera), patches.sums, inner, bare, work, *tables)
     if not room.count[0]:
         return None
-    finer = replace(patches, size=half, edge=0.5 * patches.edge)
+    finer = replace(patches, size=half, edge=0.5 * patches.edge, pixels=0.25 * patches.pixels)
     finer = fit_facets(finer, room.sums, parameters, room.facets)
     second = grow_regions(finer, parameters, _FINE_MIN * parameters.patches_min)
     return second if len(second.planes) else None

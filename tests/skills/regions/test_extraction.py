@@ -130,10 +130,11 @@ def test_a_pit_in_a_floor_is_a_hole_in_its_region():
     assert len(region_at(regions, 0.95, 0.4)) == 1
 
 
-def test_lost_pixels_lose_no_region():
+@pytest.mark.parametrize("lost", [0.3, 0.7])
+def test_lost_pixels_lose_no_region(lost):
     view = ground()
     depth = view.image.depth.copy()
-    depth[np.random.default_rng(0).random(depth.shape) < 0.3] = 0.0
+    depth[np.random.default_rng(0).random(depth.shape) < lost] = 0.0
     image = DepthImage(depth, view.image.camera, view.image.T_world_camera, 0.0, 0)
     (region,) = extract_regions(image).regions
     whole = extract_regions(view.image).regions[0]
