@@ -3,7 +3,7 @@
 ```yaml
 faults:
   - {at: sensor:depth, mode: off, start: 3.0, duration: 2.0}
-  - {at: /look_and_step/walk/sequence/walk_to/follow_path, mode: exception, start: 8.0}
+  - {at: /look_and_step/walk/sequence/go/walk_to/on_the_way/follow_path, mode: exception, start: 8.0}
   - {at: world:block_3, mode: wrong, start: 4.0, shift: [0, 0, -0.05]}
 ```
 

@@ -26,7 +26,7 @@ from sim_envs.worlds import (
     StateDriftParameters,
     WorldParameters,
 )
-from skills.body_path import SubGoalParameters
+from skills.body_path import BodyPathParameters, SubGoalParameters
 from skills.footsteps import FootstepParameters, TerrainParameters
 from skills.height_map import HeightMapParameters
 from skills.regions import MemoryParameters, RegionParameters, RegistrationParameters
@@ -82,6 +82,7 @@ class Configuration:
     region_memory: MemoryParameters
     height_map: HeightMapParameters
     registration: RegistrationParameters
+    body_path: BodyPathParameters
     sub_goal: SubGoalParameters
     footsteps: FootstepParameters
     terrain: TerrainParameters

@@ -23,7 +23,7 @@ import numpy as np
 from lookstep.configuration import Configuration, load_configuration
 from lookstep.world import build_world
 from sim_envs.courses import load_course
-from skills.body_path import straight_path, sub_goal
+from skills.body_path import Goal, PathRequest, plan_body_path, straight_path, sub_goal
 from skills.footsteps import Side, plan_footsteps, plan_from_stance, stand_on, terrain_ahead
 from skills.geometry import DepthImage, Pose
 from skills.height_map import HeightMapper
@@ -52,7 +52,10 @@ def _run_kernels(configuration: Configuration) -> None:
         image = world.depth_image(world.depth_cameras.names[0])
         scan, stance = world.lidar_scan(), world.status().imminent_stance
         assert image is not None and scan is not None, "the world takes its first frames when it is made"
-        HeightMapper(configuration.height_map).update(scan, stance.mid_feet)
+        height_map = HeightMapper(configuration.height_map).update(scan, stance.mid_feet)
+        request = PathRequest(height_map, np.array(course.start), Goal(3.0, 0.0, 0.0), configuration.body_path)
+        # The second path is planned while the first is walked.
+        plan_body_path(dataclasses.replace(request, walked=plan_body_path(request).path))
         patches = fit_patches(without_body(image), configuration.regions)
         coarse = grow_regions(patches, configuration.regions, configuration.regions.patches_min)
         refine_regions(image, patches, coarse, configuration.regions)

@@ -1,6 +1,6 @@
 """The leaves of look-and-step: thin, each calls one skill or one command of the robot."""
 
-from behaviors.leaves.follow_path import FindSubGoal, GoalReached, PlanBodyPath, WaitForGoal
+from behaviors.leaves.follow_path import FindSubGoal, GoalReached, PlanBodyPath, WaitForGoal, WatchGoal
 from behaviors.leaves.goals import GiveGoal, WatchCarrot
 from behaviors.leaves.guards import GroundFresh, RobotFallen
 from behaviors.leaves.height_map import UpdateHeightMap
@@ -28,4 +28,5 @@ __all__ = [
     "WaitForSwing",
     "WaitUntilStanding",
     "WatchCarrot",
+    "WatchGoal",
 ]

@@ -5,11 +5,24 @@ from __future__ import annotations
 import numpy as np
 from py_trees.common import Status
 
-from behaviors.leaf import Call, Leaf, SkillLeaf
+from behaviors.decorators import TIME_TOLERANCE
+from behaviors.leaf import Call, Leaf, SkillLeaf, SkillParameters
 from behaviors.operator import SendGoal
 from behaviors.ports import Input, Output
 from behaviors.registry import leaf
-from skills.body_path import BodyPath, Goal, SubGoal, goal_reached, straight_path, sub_goal
+from skills.body_path import (
+    BodyPath,
+    Goal,
+    PathEnd,
+    PathPlan,
+    PathRequest,
+    SubGoal,
+    goal_reached,
+    plan_body_path,
+    sub_goal,
+)
+from skills.height_map import HeightMap
+from skills.parameters import parameter, parameters
 from skills.walking import WalkingPhase
 
 
@@ -40,49 +53,110 @@ class WaitForGoal(Leaf):
 
 
 @leaf
-class PlanBodyPath(SkillLeaf):
-    """Plans the way of the body from the imminent stance to the goal."""
+class WatchGoal(Leaf):
+    """Takes each new goal that the operator sends, for as long as it is ticked: the robot need not stop for it."""
 
+    ends_with = ()
+    goal = Output(Goal, "where the robot is sent")
+
+    def tick(self) -> Status:
+        """RUNNING; each goal that is sent replaces the one before."""
+        goals = [event.goal for event in self.context.operator_events if isinstance(event, SendGoal)]
+        if goals and goals[-1] != self.goal:
+            self.goal = goals[-1]
+            self.log(f"new goal: x {goals[-1].x:.2f} m, y {goals[-1].y:.2f} m, yaw {goals[-1].yaw:.2f} rad")
+        return self.running("takes new goals")
+
+
+@parameters
+class PlanBodyPathParameters(SkillParameters):
+    """How long a path may take, and how often it is planned."""
+
+    latency: float = parameter(
+        0.06, unit="s", meaning="robot time until a path is delivered", minimum=0.0, maximum=60.0
+    )
+    period: float = parameter(
+        0.0,
+        unit="s",
+        meaning="to a goal that has a path already a new one is planned after this time",
+        minimum=0.0,
+        maximum=3600.0,
+    )
+
+
+@leaf
+class PlanBodyPath(SkillLeaf):
+    """Plans the way of the body over the height map, from the imminent stance to the goal.
+
+    The path that the robot is on is kept until it is blocked or another is clearly cheaper.
+    """
+
+    Parameters = PlanBodyPathParameters
+    parameters: PlanBodyPathParameters
     goal = Input(Goal, "where the robot is sent")
-    path = Output(BodyPath, "way of the body to the goal")
+    height_map = Input(HeightMap, "heights of the ground, cell by cell")
+    path = Output(BodyPath, "way of the body to the goal, or as far as it is known")
+
+    def setup(self) -> None:
+        """No path has been planned yet."""
+        self._planned_at = -float("inf")
 
     def request(self) -> Call | Status:
         """From where the feet will stand."""
+        walked = self.path if self.path is not None and self.path.leads_to(self.goal) else None
+        rest = self._planned_at + self.parameters.period - self.context.time
+        if walked is not None and rest > TIME_TOLERANCE:
+            return self.running(f"plans again every {self.parameters.period:g} s")
+        self._planned_at = self.context.time
         stance = self.context.robot.status().imminent_stance
-        start = np.array((stance.mid_feet[0], stance.mid_feet[1], stance.yaw))
-        return self.call(straight_path, start, self.goal.xyyaw_world, self.context.new_id("path"))
+        request = PathRequest(
+            height_map=self.height_map,
+            start=np.array((stance.mid_feet[0], stance.mid_feet[1], stance.yaw)),
+            goal=self.goal,
+            parameters=self.context.parameters["body_path"],
+            walked=walked,
+            path_id=self.context.new_id("path"),
+        )
+        return self.call(plan_body_path, request)
 
-    def receive(self, result: BodyPath) -> Status:
+    def receive(self, result: PathPlan) -> Status:
         """Hand the path on."""
-        self.path = result
-        return self.succeeded(f"{result.length:.1f} m to the goal")
+        self.path = result.path
+        kept = ", as before" if result.kept else ""
+        return self.succeeded(f"{result.path.length:.1f} m, {result.path.end.value}{kept}")
 
 
 @leaf
 class FindSubGoal(Leaf):
-    """Projects the imminent stance onto the path and looks ahead along it."""
+    """Projects the imminent stance onto the path and looks ahead along it; fails where the path ends short of the goal.
 
-    ends_with = (Status.SUCCESS,)
+    Such an end is no place to stop at until the robot is there: the path may still grow.
+    """
+
     path = Input(BodyPath, "way of the body to the goal")
     sub_goal = Output(SubGoal, "where the next steps should lead")
 
     def tick(self) -> Status:
         """SUCCESS with a sub-goal."""
-        stance = self.context.robot.status().imminent_stance
-        self.sub_goal = sub_goal(self.path, stance, self.context.parameters["sub_goal"])
+        stance, path = self.context.robot.status().imminent_stance, self.path
+        parameters = self.context.parameters["sub_goal"]
+        if path.end is not PathEnd.GOAL and path.length - path.project(stance.mid_feet) <= parameters.goal_distance:
+            return self.failed(f"the path ends here, {path.end.value}")
+        self.sub_goal = sub_goal(path, stance, parameters)
         return self.succeeded()
 
 
 @leaf
 class GoalReached(Leaf):
-    """Succeeds when the imminent stance is at the end of the path, in position and heading."""
+    """Succeeds when the imminent stance is at the goal, in position and heading; the end of a path alone is none."""
 
+    goal = Input(Goal, "where the robot is sent")
     path = Input(BodyPath, "way of the body to the goal")
 
     def tick(self) -> Status:
         """SUCCESS at the goal."""
         stance = self.context.robot.status().imminent_stance
-        if goal_reached(self.path, stance, self.context.parameters["sub_goal"]):
+        if goal_reached(self.goal, stance, self.context.parameters["sub_goal"]):
             return self.succeeded("the imminent stance is at the goal")
         rest = self.path.length - self.path.project(stance.mid_feet)
-        return self.failed(f"{rest:.1f} m to go")
+        return self.failed(f"{rest:.1f} m to go on the path")

@@ -11,7 +11,7 @@ from lookstep.errors import UserError
 
 NAME = "replay"
 HELP = "drive a tree again through recorded runs and name the first tick in which it decides otherwise"
-EXAMPLE = "lookstep replay runs/demo --set /look_and_step/walk/sequence/walk_to/follow_path.attempts=3"
+EXAMPLE = "lookstep replay runs/demo --set /look_and_step/walk/sequence/go/walk_to/on_the_way/follow_path.attempts=3"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

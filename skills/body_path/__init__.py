@@ -1,8 +1,23 @@
 """The way of the body from start to goal, and the sub-goals along it."""
 
-from skills.body_path.body_path import BodyPath
+from skills.body_path.body_path import BodyPath, PathEnd
 from skills.body_path.goal import Goal
+from skills.body_path.path_parameters import BodyPathParameters
+from skills.body_path.path_planner import PathPlan, PathRequest, plan_body_path
 from skills.body_path.straight_path import straight_path
 from skills.body_path.sub_goal import SubGoal, SubGoalParameters, goal_reached, sub_goal
 
-__all__ = ["BodyPath", "Goal", "SubGoal", "SubGoalParameters", "goal_reached", "straight_path", "sub_goal"]
+__all__ = [
+    "BodyPath",
+    "BodyPathParameters",
+    "Goal",
+    "PathEnd",
+    "PathPlan",
+    "PathRequest",
+    "SubGoal",
+    "SubGoalParameters",
+    "goal_reached",
+    "plan_body_path",
+    "straight_path",
+    "sub_goal",
+]

@@ -3,10 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from enum import Enum
 
 import numpy as np
 
+from skills.body_path.goal import Goal
 from skills.geometry.pose import Array, readonly, wrap_angle
+
+
+class PathEnd(Enum):
+    """Where a path ends: at the goal, or why not there."""
+
+    GOAL = "at the goal"
+    BORDER = "at the border of the height map; the goal lies beyond"
+    GOAL_OCCUPIED = "as near to the goal as it gets: the goal is inside an obstacle"
+    GOAL_CUT_OFF = "as near to the goal as it gets: no way leads there"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -16,11 +27,15 @@ class BodyPath:
     Attributes:
         waypoints_world: (N >= 2, 3) rows of x, y [m] and heading yaw [rad].
         path_id: unique over a run.
+        end: whether it ends at the goal, and why not.
+        goal_world: (3,) where it is to lead, x, y [m] and heading [rad]; its last waypoint where not given.
         arc_lengths: distance from the start along the path to each waypoint, (N,) [m]; made from the waypoints.
     """
 
     waypoints_world: Array
     path_id: int = 0
+    end: PathEnd = PathEnd.GOAL
+    goal_world: Array | None = None
     arc_lengths: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -28,13 +43,19 @@ class BodyPath:
         if len(waypoints) < 2:
             raise ValueError(f"got {len(waypoints)} waypoints, a body path needs at least 2")
         lengths = np.linalg.norm(np.diff(waypoints[:, :2], axis=0), axis=1)
+        goal = waypoints[-1] if self.goal_world is None else self.goal_world
         object.__setattr__(self, "waypoints_world", waypoints)
+        object.__setattr__(self, "goal_world", readonly(goal, (3,)))
         object.__setattr__(self, "arc_lengths", readonly(np.concatenate(([0.0], np.cumsum(lengths)))))
 
     @property
     def length(self) -> float:
         """Length of the whole path [m]."""
         return float(self.arc_lengths[-1])
+
+    def leads_to(self, goal: Goal) -> bool:
+        """Whether it was planned to a goal, however far it comes."""
+        return np.array_equal(self.goal_world, goal.xyyaw_world)  # type: ignore[arg-type]
 
     def project(self, point_world: Array) -> float:
         """Arc length of the path point nearest to a point, of which x and y count [m]."""

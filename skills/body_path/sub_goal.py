@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from skills.body_path.body_path import BodyPath
+from skills.body_path.goal import Goal
 from skills.footsteps.footstep import Stance
 from skills.geometry.pose import Array, readonly, wrap_angle
 from skills.parameters import parameter, parameters
@@ -70,11 +71,10 @@ def sub_goal(path: BodyPath, imminent_stance: Stance, parameters: SubGoalParamet
     return SubGoal(path, start, arc_length, end, searched)
 
 
-def goal_reached(path: BodyPath, imminent_stance: Stance, parameters: SubGoalParameters) -> bool:
-    """Whether the imminent stance is at the end of the path, by position and heading."""
-    goal = path.waypoints_world[-1]
-    distance = np.linalg.norm(imminent_stance.mid_feet[:2] - goal[:2])
-    turn = abs(wrap_angle(imminent_stance.yaw - goal[2]))
+def goal_reached(goal: Goal, imminent_stance: Stance, parameters: SubGoalParameters) -> bool:
+    """Whether the imminent stance is at the goal, by position and heading."""
+    distance = np.hypot(*(imminent_stance.mid_feet[:2] - (goal.x, goal.y)))
+    turn = abs(wrap_angle(imminent_stance.yaw - goal.yaw))
     return bool(distance <= parameters.goal_distance and turn <= parameters.goal_yaw)
 
 

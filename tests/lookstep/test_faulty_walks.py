@@ -17,7 +17,8 @@ from lookstep.summary import Outcome, Summary
 from strict_yaml import YamlError, parse_document
 
 SMALL_CAMERA = ("camera.resolution=0.3125",)
-PLAN = "/look_and_step/walk/sequence/walk_to/follow_path/selector/go_on/take_a_step/plan_steps/sequence/plan_footsteps"
+STEPS = "/look_and_step/walk/sequence/go/walk_to/on_the_way/follow_path/selector/go_on/take_a_step"
+PLAN = f"{STEPS}/plan_steps/sequence/plan_footsteps"
 
 
 def walk(text: str, folder: Path, seconds: float, course: str = "flat", **options) -> Summary:

@@ -10,7 +10,7 @@ from lookstep.options import RunOptions
 from lookstep.replay import ReplayOptions, replay
 from lookstep.walk import walk
 
-WAIT = "/look_and_step/walk/sequence/walk_to/follow_path/selector/go_on/take_a_step/wait_for_swing"
+WAIT = "/look_and_step/walk/sequence/go/walk_to/on_the_way/follow_path/selector/go_on/take_a_step/wait_for_swing"
 
 
 class Person:

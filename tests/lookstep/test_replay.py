@@ -14,7 +14,7 @@ from lookstep.errors import UserError
 from lookstep.replay import ReplayOptions, replay
 from strict_yaml import shipped
 
-WALK = "/look_and_step/walk/sequence/walk_to"
+WALK = "/look_and_step/walk/sequence/go/walk_to"
 
 
 @pytest.fixture(scope="module")

@@ -7,10 +7,11 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from behaviors import Status, Tree, parse_tree
 from behaviors.operator import ReviewParameters, SendGoal
-from skills.body_path import BodyPath, Goal, SubGoalParameters, straight_path
+from skills.body_path import BodyPath, BodyPathParameters, Goal, SubGoalParameters, straight_path
 from skills.footsteps import (
     Footstep,
     FootstepParameters,
@@ -21,7 +22,7 @@ from skills.footsteps import (
     TerrainParameters,
 )
 from skills.geometry import DepthImage, LidarScan, PinholeCamera, Pose, SpinningLidar
-from skills.height_map import HeightMapParameters
+from skills.height_map import HeightMap, HeightMapParameters, ScanAccount
 from skills.regions import MemoryParameters, PlanarRegion, PlanarRegions, RegionParameters, RegistrationParameters
 from skills.walking import RobotState, StepEvent, WalkingPhase, WalkingStatus
 
@@ -32,6 +33,7 @@ PARAMETERS: Mapping[str, Any] = {
     "region_memory": MemoryParameters(),
     "height_map": HeightMapParameters(),
     "registration": RegistrationParameters(),
+    "body_path": BodyPathParameters(),
     "sub_goal": SubGoalParameters(),
     "footsteps": FootstepParameters(),
     "terrain": TerrainParameters(),
@@ -164,6 +166,14 @@ def ground(time: float = 0.0) -> PlanarRegions:
     """A square metre of level ground, seen at a time."""
     hull = np.array([[0.5, 0.5], [-0.5, 0.5], [-0.5, -0.5], [0.5, -0.5]])
     return PlanarRegions((PlanarRegion(Pose.identity(), hull, (hull,), 1.0, time),), time, 0)
+
+
+def height_map(heights: NDArray[np.floating] | None = None) -> HeightMap:
+    """Ground of 8 x 8 m ahead of the origin, level where no other heights are given."""
+    heights = (np.zeros((80, 80)) if heights is None else heights).astype(np.float32)
+    filled = np.zeros(heights.shape, dtype=bool)
+    variances = np.full_like(heights, 1e-4)
+    return HeightMap(heights, variances, filled, 0.1, np.array((-1.0, -4.0)), 0.0, 0, 0.0, ScanAccount())
 
 
 def path(length: float = 4.0, path_id: int = 0) -> BodyPath:

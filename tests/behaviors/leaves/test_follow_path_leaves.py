@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
-from scripted_walk import PARAMETERS, WalkingRobot, goal, path, status_and_reason, step, tick, tree_of
+from scripted_walk import PARAMETERS, WalkingRobot, goal, height_map, path, status_and_reason, step, tick, tree_of
 
 from behaviors import Outcome, Status, Tree, parse_tree
-from skills.body_path import Goal
+from skills.body_path import BodyPath, Goal, PathEnd
 
+PLAN = "PlanBodyPath: {in: [goal, height_map], out: [path], latency: 0.04}"
+AGAIN = "PlanBodyPath: {in: [goal, height_map], out: [path], latency: 0.04, period: 1.0}"
 AGAIN_AND_AGAIN = "{tree: t, root: {loop_forever: {sequence: [WaitForGoal: {out: [goal]}, Wait: {duration: 0.1}]}}}"
 
 
@@ -59,13 +62,46 @@ def test_a_goal_for_a_fallen_robot_is_refused_and_forgotten():
 def test_the_body_path_leads_from_the_imminent_stance_to_the_goal():
     robot = WalkingRobot()
     robot.swing(step(0, x=0.4), 0.6)
-    tree = tree_of("PlanBodyPath: {in: [goal], out: [path], latency: 0.04}", robot, goal=Goal(4.0, 1.0, 0.5))
+    tree = tree_of(PLAN, robot, goal=Goal(4.0, 1.0, 0.5), height_map=height_map())
     tick(tree, 3)
     assert tree.outcome is Outcome.SUCCESS
-    assert tree.reason == "3.9 m to the goal"
+    assert tree.reason == "3.9 m, at the goal"
     waypoints = tree.blackboard["path"].waypoints_world
     assert waypoints[0].tolist() == [0.2, 0.0, 0.0]
     assert waypoints[-1].tolist() == [4.0, 1.0, 0.5]
+
+
+def test_the_path_is_planned_again_after_the_period_and_at_once_to_a_new_goal():
+    robot = WalkingRobot()
+    tree = tree_of(f"loop_forever: {{{AGAIN}}}", robot, goal=Goal(4.0, 0.0, 0.0), height_map=height_map())
+    tick(tree, 3)
+    first = tree.blackboard["path"]
+    assert first.leads_to(Goal(4.0, 0.0, 0.0))
+    robot.stand(x=1.0)
+    tick(tree, 48)
+    assert tree.root.reason == "plans again every 1 s"
+    tick(tree, 4)
+    assert tree.blackboard["path"] is first
+    wall = np.zeros((80, 80))
+    wall[38:43, 25:27] = 1.0
+    tree.set_input("height_map", height_map(wall))
+    tick(tree, 50)
+    around = tree.blackboard["path"]
+    assert around.leads_to(Goal(4.0, 0.0, 0.0))
+    assert np.abs(around.waypoints_world[:, 1]).max() > 0.5
+    tree.set_input("goal", Goal(4.0, 2.0, 0.0))
+    tick(tree, 3)
+    assert tree.blackboard["path"].leads_to(Goal(4.0, 2.0, 0.0))
+
+
+def test_a_goal_that_is_sent_while_the_robot_walks_replaces_the_old_one():
+    tree = tree_of("parallel: [WatchGoal: {out: [goal]}, Wait: {duration: 1.0}]", WalkingRobot())
+    for x in (3.0, 5.0):
+        tree.send(goal(x))
+        tick(tree)
+        assert tree.blackboard["goal"] == Goal(x, 0.0, 0.0)
+    tick(tree, 5)
+    assert tree.blackboard["goal"] == Goal(5.0, 0.0, 0.0)
 
 
 def test_the_sub_goal_lies_ahead_of_the_imminent_stance():
@@ -79,15 +115,30 @@ def test_the_sub_goal_lies_ahead_of_the_imminent_stance():
     assert found.arc_length == pytest.approx(1.2 + PARAMETERS["sub_goal"].ahead)
 
 
+@pytest.mark.parametrize("end", [PathEnd.BORDER, PathEnd.GOAL_OCCUPIED, PathEnd.GOAL_CUT_OFF])
+def test_where_a_path_ends_short_of_the_goal_the_robot_stands_and_says_why(end):
+    robot = WalkingRobot()
+    short = BodyPath(path(2.0).waypoints_world, end=end, goal_world=np.array((4.0, 0.0, 0.0)))
+    tree = tree_of(
+        "sequence: [inverter: {GoalReached: {in: [goal, path]}}, FindSubGoal: {in: [path], out: [sub_goal]}]",
+        robot,
+        path=short,
+        goal=Goal(4.0, 0.0, 0.0),
+    )
+    assert status_and_reason(tree)[0] is Status.SUCCESS
+    robot.stand(x=1.95)
+    assert status_and_reason(tree) == (Status.FAILURE, f"the path ends here, {end.value}")
+
+
 def test_the_goal_is_reached_when_the_imminent_stance_is_there():
     robot = WalkingRobot()
     robot.stand(x=3.9)
-    tree = tree_of("GoalReached: {in: [path]}", robot, path=path(4.0))
+    tree = tree_of("GoalReached: {in: [goal, path]}", robot, path=path(4.0), goal=Goal(4.0, 0.0, 0.0))
     assert status_and_reason(tree) == (Status.SUCCESS, "the imminent stance is at the goal")
 
 
 def test_a_goal_ahead_is_not_reached_and_the_rest_of_the_way_is_told():
     robot = WalkingRobot()
     robot.stand(x=1.0)
-    tree = tree_of("GoalReached: {in: [path]}", robot, path=path(4.0))
-    assert status_and_reason(tree) == (Status.FAILURE, "3.0 m to go")
+    tree = tree_of("GoalReached: {in: [goal, path]}", robot, path=path(4.0), goal=Goal(4.0, 0.0, 0.0))
+    assert status_and_reason(tree) == (Status.FAILURE, "3.0 m to go on the path")

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from skills.body_path import BodyPath, SubGoalParameters, goal_reached, straight_path, sub_goal
+from skills.body_path import BodyPath, Goal, SubGoalParameters, goal_reached, straight_path, sub_goal
 from skills.footsteps.footstep import Stance
 from skills.geometry.pose import Pose
 
@@ -38,13 +38,12 @@ def test_search_ends_at_the_end_of_the_path():
 
 
 def test_goal_is_reached_by_position_and_heading():
-    path = straight_path(np.zeros(3), np.array((2.0, 0.0, 0.0)))
-    assert goal_reached(path, stance(2.0 - 0.9 * PARAMETERS.goal_distance), PARAMETERS)
-    assert not goal_reached(path, stance(2.0 - 1.1 * PARAMETERS.goal_distance), PARAMETERS)
-    assert goal_reached(path, stance(2.0, yaw=0.9 * PARAMETERS.goal_yaw), PARAMETERS)
-    assert not goal_reached(path, stance(2.0, yaw=1.1 * PARAMETERS.goal_yaw), PARAMETERS)
+    goal = Goal(2.0, 0.0, 0.0)
+    assert goal_reached(goal, stance(2.0 - 0.9 * PARAMETERS.goal_distance), PARAMETERS)
+    assert not goal_reached(goal, stance(2.0 - 1.1 * PARAMETERS.goal_distance), PARAMETERS)
+    assert goal_reached(goal, stance(2.0, yaw=0.9 * PARAMETERS.goal_yaw), PARAMETERS)
+    assert not goal_reached(goal, stance(2.0, yaw=1.1 * PARAMETERS.goal_yaw), PARAMETERS)
 
 
 def test_heading_is_compared_the_short_way_round():
-    path = straight_path(np.array((1.0, 0.0, np.pi)), np.array((0.0, 0.0, np.pi)))
-    assert goal_reached(path, stance(0.0, yaw=-np.pi + 0.05), PARAMETERS)
+    assert goal_reached(Goal(0.0, 0.0, np.pi), stance(0.0, yaw=-np.pi + 0.05), PARAMETERS)

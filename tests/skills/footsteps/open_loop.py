@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from sim_envs.courses import Box, Course, load_course
-from skills.body_path import SubGoalParameters, goal_reached, straight_path, sub_goal
+from skills.body_path import Goal, SubGoalParameters, goal_reached, straight_path, sub_goal
 from skills.footsteps import (
     Footstep,
     FootstepParameters,
@@ -109,7 +109,7 @@ def walk(
     path = straight_path(start, goal)
     taken: list[Taken] = []
     plan: FootstepPlan | None = None
-    while not goal_reached(path, stance, sub_goals):
+    while not goal_reached(Goal(*(float(n) for n in goal)), stance, sub_goals):
         ahead = sub_goal(path, stance, sub_goals)
         terrain = terrain_ahead(regions, stance, ahead, parameters, TerrainParameters())
         if taken:
