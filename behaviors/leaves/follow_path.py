@@ -78,7 +78,7 @@ class PlanBodyPathParameters(SkillParameters):
     period: float = parameter(
         0.0,
         unit="s",
-        meaning="to a goal that has a path already a new one is planned after this time",
+        meaning="a path that leads to the goal is looked at again after this time; 0: plans anew at once",
         minimum=0.0,
         maximum=3600.0,
     )
@@ -88,7 +88,7 @@ class PlanBodyPathParameters(SkillParameters):
 class PlanBodyPath(SkillLeaf):
     """Plans the way of the body over the height map, from the imminent stance to the goal.
 
-    The path that the robot is on is kept until it is blocked or another is clearly cheaper.
+    With a period, the path that the robot is on is kept until it is blocked or another is clearly cheaper.
     """
 
     Parameters = PlanBodyPathParameters
@@ -103,10 +103,10 @@ class PlanBodyPath(SkillLeaf):
 
     def request(self) -> Call | Status:
         """From where the feet will stand."""
-        walked = self.path if self.path is not None and self.path.leads_to(self.goal) else None
-        rest = self._planned_at + self.parameters.period - self.context.time
-        if walked is not None and rest > TIME_TOLERANCE:
-            return self.running(f"plans again every {self.parameters.period:g} s")
+        period, path = self.parameters.period, self.path
+        walked = path if period > 0.0 and path is not None and path.leads_to(self.goal) else None
+        if walked is not None and self.context.time < self._planned_at + period - TIME_TOLERANCE:
+            return self.running(f"plans again every {period:g} s")
         self._planned_at = self.context.time
         stance = self.context.robot.status().imminent_stance
         request = PathRequest(

@@ -18,8 +18,8 @@ from skills.geometry.pose import Array
 from skills.height_map import HeightMap
 from skills.kernels import kernel
 
-GROUND, FOOTHOLD, SLOPE_X, SLOPE_Y, DISTANCE, AWAY, TOP, SEEN = range(8)
-LAYERS = 8
+GROUND, FOOTHOLD, SLOPE_X, SLOPE_Y, DISTANCE, AWAY, TOP = range(7)
+LAYERS = 7
 
 _LEAST_CELLS = 8  # A plane is fitted to no fewer.
 _FAR = 100.0  # Distance from obstacles where there is none [m].
@@ -48,9 +48,9 @@ class GroundLayers:
     """What the cost of a way looks up.
 
     Attributes:
-        layers: (LAYERS, rows, columns): `GROUND` mean height [m]; `FOOTHOLD` 0 .. 1; `SLOPE_X`, `SLOPE_Y` of the ground;
-            `DISTANCE` from the nearest obstacle [m]; `AWAY` 0 .. 1 from the path that is walked; `TOP` the highest
-            height that the body could touch [m]; `SEEN` share of the cell that is known.
+        layers: (LAYERS, rows, columns): `GROUND` mean height [m]; `FOOTHOLD` 0 .. 1; `SLOPE_X` and `SLOPE_Y` of the
+            ground; `DISTANCE` from the nearest obstacle [m]; `AWAY` 0 .. 1 from the path that is walked; `TOP` the
+            highest height that the body could touch [m].
         cells: heights of the map, NaN where unknown, (map rows, map columns) [m].
         x, y: centre of the first cell of a layer in the world [m].
         spacing: edge of a cell of a layer [m].
@@ -92,7 +92,6 @@ class GroundLayers:
         _find_obstacles(tops, layers[GROUND], around // 2, p.ground_clearance, layers[DISTANCE])
         _measure_distances(layers[DISTANCE], spacing)
         _highest(tops, around, layers[TOP])
-        layers[SEEN] = counts / group**2
         x, y = resolution * (first - (offset_x, offset_y)) + 0.5 * spacing
         layers.flags.writeable = False
         cells_x, cells_y = height_map.origin_world
@@ -163,7 +162,7 @@ def _gather(
 
 @kernel
 def _fit_ground(counts: Array, means: Array, around: int, low: float, ground: Array) -> None:
-    """Mean height of a cell and its neighbours; where none is known, of all around; else the lowest ground of the map."""
+    """Mean height of a cell and its neighbours; where none is known, of all around; else the map's lowest ground."""
     for i in range(ground.shape[0]):
         for j in range(ground.shape[1]):
             mean = _mean_around(counts, means, i, j, 1)

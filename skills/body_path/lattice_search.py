@@ -115,11 +115,11 @@ def search_lattice(
                 continue
             costs[to], parents[to] = through, node
             size = push(open_list, size, through + _apart(to_x, to_y, goal), through, to, node)
-    reached = closed[at_goal]
+    reached = bool(closed[at_goal])
     end = at_goal if reached else nearest
     if reached and beyond > 0.0:
-        end = parents[at_goal]
-    return _trace(scale, columns, start, goal, end, parents), costs[end], reached, expanded
+        end = int(parents[at_goal])
+    return _trace(scale, columns, start, goal, end, parents), float(costs[end]), reached, expanded
 
 
 @kernel
@@ -156,9 +156,9 @@ def _leave(
                     free = length > 0.0 and body_fits(layers, cells, scale, x, y, dx / length, dy / length)
                 if free and size < len(open_list):
                     node = i * columns + j
-                    costs[node] = motion_cost(layers, scale, start[0], start[1], x, y)
-                    parents[node] = rows * columns
-                    size = push(open_list, size, costs[node] + _apart(x, y, goal), costs[node], node, rows * columns)
+                    cost = motion_cost(layers, scale, start[0], start[1], x, y)
+                    costs[node], parents[node] = cost, rows * columns
+                    size = push(open_list, size, cost + _apart(x, y, goal), cost, node, rows * columns)
         if size > 0:
             break
     return size

@@ -28,7 +28,9 @@ def robot(monkeypatch: pytest.MonkeyPatch) -> WalkingRobot:
 
     monkeypatch.setattr(look, "examine_regions", examine)
     monkeypatch.setattr(plan_steps, "plan_on_request", lambda request: plan(0))
-    return WalkingRobot()
+    robot = WalkingRobot()
+    robot.scan_id = 0
+    return robot
 
 
 @pytest.fixture

@@ -40,7 +40,10 @@ def requests(monkeypatch: pytest.MonkeyPatch) -> list[PlanRequest]:
 
 @pytest.fixture
 def robot() -> WalkingRobot:
-    return WalkingRobot()
+    """It has looked around once, and seen nothing: the way leads straight over unseen ground."""
+    robot = WalkingRobot()
+    robot.scan_id = 0
+    return robot
 
 
 @pytest.fixture
