@@ -108,7 +108,7 @@ def test_old_ground_is_not_planned_on_and_the_operator_reads_why(tree, robot, re
     for _ in range(30):
         tick(tree)
         said += [t.reason for t in tree.transitions if t.path.endswith("ground_fresh") and t.after is Status.FAILURE]
-    assert said == ["regions are 1.8 s old, limit 1.5 s", "regions are 2.3 s old, limit 1.5 s"]
+    assert said == ["regions are 1.9 s old, limit 1.5 s", "regions are 2.4 s old, limit 1.5 s"]
     assert requests == [] and robot.commands == ["pause_walking"]
 
 
