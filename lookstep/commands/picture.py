@@ -74,7 +74,7 @@ def _write(file: Path, view: str, moment: Moment) -> None:
 def _known(view: str, moment: Moment) -> NDArray[np.uint8]:
     """A picture of the newest value on the blackboard that the view shows."""
     from lookstep import perception_pictures
-    from lookstep.recording.scene import colors_by_place
+    from lookstep.shapes import colors_by_place
     from skills.footsteps import Side
     from skills.height_map import HeightMap
     from skills.regions import PlanarRegions, RegionExtraction, debug_image
@@ -95,7 +95,7 @@ def _known(view: str, moment: Moment) -> NDArray[np.uint8]:
 
 
 def _robot(moment: Moment) -> NDArray[np.uint8]:
-    from lookstep.recording.palette import REGION_COLORS
+    from lookstep.palette import REGION_COLORS
     from sim_envs.picture import Overlay, beside_robot, picture_camera, picture_of, planned_steps, region_outlines
     from skills.footsteps import FootstepPlan
     from skills.regions import RegionExtraction

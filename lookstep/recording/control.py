@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import rerun as rr
 
-from lookstep.recording import palette
+from lookstep import palette
 from lookstep.recording.columns import Columns
 from skills.footsteps import Side
 from skills.walking import ControlSample

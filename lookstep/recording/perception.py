@@ -9,8 +9,8 @@ import numpy as np
 import rerun as rr
 from numpy.typing import NDArray
 
+from lookstep import palette, shapes
 from lookstep.perception_pictures import colored, height_picture
-from lookstep.recording import palette, scene
 from lookstep.recording.columns import Columns
 from lookstep.recording.images import encoded_depth, encoded_drawing, encoded_picture, pinhole_of
 from skills.geometry import LidarScan
@@ -44,7 +44,7 @@ class PerceptionViews:
         camera = f"camera/{extraction.image.camera_name}"
         log(f"{camera}/depth", encoded_depth(extraction.image))
         stride = 2 if extraction.image.camera.width > _PICTURE_WIDTH else 1
-        colors = scene.colors_by_place(extraction.regions)
+        colors = shapes.colors_by_place(extraction.regions)
         log(f"{camera}/regions", encoded_picture(debug_image(extraction, stride, colors)))
         log(f"{camera}/rejected", rr.TextDocument(rejections(extraction), media_type="text/markdown"))
         log(f"world/{camera}", *pinhole_of(extraction.image))
@@ -62,7 +62,7 @@ class PerceptionViews:
             self._stream.log(
                 "world/forgotten",
                 rr.LineStrips3D(
-                    [scene.closed(forgotten.region.hull_world) for forgotten in shown],
+                    [shapes.closed(forgotten.region.hull_world) for forgotten in shown],
                     labels=[forgotten.reason for forgotten in shown],
                     colors=[palette.FORGOTTEN],
                     radii=0.006,

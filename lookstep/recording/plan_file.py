@@ -13,7 +13,8 @@ import rerun as rr
 import rerun.blueprint as rrb
 from numpy.typing import NDArray
 
-from lookstep.recording import palette, scene
+from lookstep import palette, shapes
+from lookstep.recording import scene
 from skills.footsteps import FootstepPlan, PlanRequest, SearchLog, Side, whole_sole
 from skills.footsteps.rejections import REASONS
 from skills.geometry import Array
@@ -53,7 +54,7 @@ def rejections_page(plan: FootstepPlan) -> str:
 
 
 def _log_ground(stream: rr.RecordingStream, root: str, request: PlanRequest) -> None:
-    colors = scene.colors_by_place(request.ground)
+    colors = shapes.colors_by_place(request.ground)
     stream.log(f"{root}/ground/outlines", scene.region_outlines(request.ground), static=True)
     stream.log(f"{root}/ground/surfaces", scene.region_surfaces(request.ground, colors), static=True)
     height = float(request.stance.mid_feet[2])

@@ -14,9 +14,10 @@ import numpy as np
 import rerun as rr
 
 from behaviors import JobRecord, Node, Status, Tree
+from lookstep import palette, shapes
 from lookstep.deadlines import verdict
 from lookstep.moment import Moment
-from lookstep.recording import palette, scene
+from lookstep.recording import scene
 from lookstep.recording.blueprint import TIMELINE, default_blueprint
 from lookstep.recording.columns import Columns
 from lookstep.recording.control import ControlViews
@@ -140,9 +141,9 @@ class Recording:
     def _log_links(self, world: SimulatedWorld) -> list[tuple[str, int]]:
         """Log the shape of each link once; returns entity and body id of each."""
         links = []
-        for body, mesh in scene.robot_meshes(world.model):
+        for body, triangles in shapes.link_triangles(world.model):
             entity = f"world/robot/{world.model.body(body).name.rpartition('/')[2]}"
-            self._stream.log(entity, mesh, static=True)
+            self._stream.log(entity, scene.mesh(triangles, shaded=True), static=True)
             links.append((entity, body))
         return links
 
@@ -166,7 +167,7 @@ class Recording:
         match value:
             case PlanarRegions():
                 log(f"world/{key}/outlines", scene.region_outlines(value))
-                log(f"world/{key}/surfaces", scene.region_surfaces(value, scene.colors_by_place(value)))
+                log(f"world/{key}/surfaces", scene.region_surfaces(value, shapes.colors_by_place(value)))
             case RegionExtraction():
                 self._perception.log_extraction(value)
             case GroundUpdate():

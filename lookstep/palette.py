@@ -1,4 +1,4 @@
-"""The colours of a recording, so that a thing has one colour in every view."""
+"""The colours of recording and panel, so that a thing has one colour in every view."""
 
 RGBA = tuple[int, int, int, int]
 
