@@ -7,6 +7,7 @@ import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from lookstep.arguments import add_assignments
 from lookstep.errors import UserError
 
 if TYPE_CHECKING:
@@ -27,14 +28,7 @@ _LOGGED, _AGAIN = "as logged", "planned again"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the file and what to change."""
     parser.add_argument("file", type=Path, metavar="FILE", help="a plan log; `lookstep plans` lists those of a folder")
-    parser.add_argument(
-        "--set",
-        dest="assignments",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="plan again with footsteps.key=value or terrain.key=value; may be repeated",
-    )
+    add_assignments(parser, "plan again with footsteps.key=value or terrain.key=value")
     parser.add_argument("--record", type=Path, metavar="RRD", help="write the recording here (beside the log, .rrd)")
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lookstep.arguments import add_assignments
 from lookstep.errors import UserError
 
 if TYPE_CHECKING:
@@ -44,8 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
                         "and distance that it walks with")  # fmt: skip
     parser.add_argument("--slope-max", type=float, metavar="DEG", help="reject steeper regions; 90 leaves out what "
                         "hangs over (180: all count)")  # fmt: skip
-    parser.add_argument("--set", dest="assignments", action="append", default=[], metavar="KEY=VALUE",
-                        help="one parameter, such as regions.area_min=0.05; may be repeated")  # fmt: skip
+    add_assignments(parser, "one parameter, such as regions.area_min=0.05")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder for regions.png, regions.rrd and regions.json "
                         f"({_FOLDER}, where no file is named)")  # fmt: skip
     parser.add_argument("--picture", type=Path, metavar="FILE", help="write the picture here: .png or .jpg")

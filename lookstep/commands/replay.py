@@ -7,6 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from lookstep.arguments import add_assignments
 from lookstep.errors import UserError
 
 NAME = "replay"
@@ -18,14 +19,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the runs and what may be edited."""
     parser.add_argument("runs", nargs="+", type=Path, metavar="RUN", help="folder that a run has written with --out")
     parser.add_argument("--tree", help="another tree: what would it have decided? (the recorded one)")
-    parser.add_argument(
-        "--set",
-        dest="assignments",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="another parameter: subject.key=value or /node/path.key=value; may be repeated",
-    )
+    add_assignments(parser, "another parameter: subject.key=value or /node/path.key=value")
     parser.add_argument(
         "--outputs", action="store_true", help="leaves say again what they said, instead of computing everything anew"
     )

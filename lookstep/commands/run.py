@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from lookstep.arguments import add_assignments
 from lookstep.errors import UserError
 from lookstep.options import EXECUTORS, WORLDS, RunOptions
 
@@ -28,14 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--time-limit", type=float, default=defaults.time_limit, help="robot time [s] (%(default)s)")
     parser.add_argument("--robot", default=defaults.robot, help="shipped robot or YAML file (%(default)s)")
     parser.add_argument("--preset", help="shipped preset or YAML file, such as fast")
-    parser.add_argument(
-        "--set",
-        dest="assignments",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="one parameter: subject.key=value, course.option=value or /node/path.key=value; may be repeated",
-    )
+    add_assignments(parser, "one parameter: subject.key=value, course.option=value or /node/path.key=value")
     parser.add_argument("--review", action="store_true", help="ask in the terminal before paths and plans are walked")
     parser.add_argument("--faults", type=Path, metavar="FILE", help="inject the faults that a YAML file lists")
     parser.add_argument(

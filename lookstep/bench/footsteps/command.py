@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from lookstep.bench.subject import Progress, Report
+    from lookstep.arguments import add_assignments
+from lookstep.bench.subject import Progress, Report
 
 NAME = "footsteps"
 HELP = "plans over planar-region maps: solved or why not, steps, cost, time and expansions"
@@ -23,14 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="folder with maps, *.json or planar_regions/*.json (the one that LOOKSTEP_DATA names)",
     )
     parser.add_argument("--pictures", type=Path, metavar="DIR", help="draw each plan from above into this folder")
-    parser.add_argument(
-        "--set",
-        dest="assignments",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="one parameter: footsteps.key=value or terrain.key=value; may be repeated",
-    )
+    add_assignments(parser, "one parameter: footsteps.key=value or terrain.key=value")
 
 
 def measure(options: argparse.Namespace, progress: Progress) -> Report:

@@ -7,6 +7,7 @@ import dataclasses
 import os
 from typing import TYPE_CHECKING
 
+from lookstep.arguments import add_assignments
 from lookstep.errors import UserError
 
 if TYPE_CHECKING:
@@ -25,14 +26,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--push-map", action="store_true", help="also pushes by force and direction, over four phases")
     parser.add_argument("--speed-map", action="store_true", help="also step lengths by timing")
     parser.add_argument("--preset", help="shipped preset or YAML file, as for `run`")
-    parser.add_argument(
-        "--set",
-        dest="assignments",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="one parameter, such as walking.dcm_gain=4; may be repeated",
-    )
+    add_assignments(parser, "one parameter, such as walking.dcm_gain=4")
 
 
 def measure(options: argparse.Namespace, progress: Progress) -> Report:
