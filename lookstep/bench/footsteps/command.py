@@ -6,9 +6,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from lookstep.arguments import add_assignments
+
 if TYPE_CHECKING:
-    from lookstep.arguments import add_assignments
-from lookstep.bench.subject import Progress, Report
+    from lookstep.bench.subject import Progress, Report
 
 NAME = "footsteps"
 HELP = "plans over planar-region maps: solved or why not, steps, cost, time and expansions"
