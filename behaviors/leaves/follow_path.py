@@ -120,7 +120,9 @@ class PlanBodyPath(SkillLeaf):
         return self.call(plan_body_path, request)
 
     def receive(self, result: PathPlan) -> Status:
-        """Hand the path on."""
+        """Hand the path on; where planning failed the one before stays."""
+        if result.path is None:
+            return self.failed(result.failure)
         self.path = result.path
         kept = ", as before" if result.kept else ""
         return self.succeeded(f"{result.path.length:.1f} m, {result.path.end.value}{kept}")

@@ -30,7 +30,7 @@ class BodyPathParameters:
         choices=(LATTICE, *OMPL_PLANNERS),
     )
     termination_checks: int = parameter(
-        20_000, unit="1", meaning="OMPL ends when it has asked so often whether to end", minimum=1
+        2000, unit="1", meaning="OMPL ends when it has asked so often whether to end", minimum=1
     )
     seed: int = parameter(1, unit="1", meaning="of OMPL's random numbers", minimum=1, maximum=2**31 - 1)
     warm_start: bool = parameter(

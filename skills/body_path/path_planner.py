@@ -15,10 +15,14 @@ from skills.body_path.body_path import BodyPath, PathEnd
 from skills.body_path.goal import Goal
 from skills.body_path.ground_layers import GroundLayers
 from skills.body_path.lattice_search import search_lattice
-from skills.body_path.path_parameters import BodyPathParameters
+from skills.body_path.ompl_server import ask_ompl
+from skills.body_path.ompl_solver import OmplProblem
+from skills.body_path.path_cost import way_cost
+from skills.body_path.path_parameters import LATTICE, BodyPathParameters
 from skills.body_path.path_problem import PathProblem
 from skills.body_path.smoothing import choose_points, smooth
 from skills.body_path.way_headings import path_along
+from skills.forking_server import ServerError
 from skills.geometry.pose import Array
 from skills.height_map import HeightMap
 
@@ -49,25 +53,30 @@ class PathPlan:
     """The answer to a request.
 
     Attributes:
-        path: the way of the body; the very one that is walked where that is kept.
+        path: the way of the body; the very one that is walked where that is kept; None where planning itself failed.
         cost: of the way [m of good ground].
         kept: whether it is the one that is walked.
         expansions: nodes of the lattice that were expanded.
+        failure: why planning failed.
     """
 
-    path: BodyPath
+    path: BodyPath | None
     cost: float
     kept: bool
     expansions: int
+    failure: str = ""
 
 
 def plan_body_path(request: PathRequest) -> PathPlan:
-    """Find a way, or keep the one that is walked."""
+    """Find a way, or keep the one that is walked; planning itself fails only where OMPL does."""
     parameters = request.parameters
     ground = GroundLayers.of(request.height_map, parameters)
     problem = PathProblem(ground, request.start, request.goal.xyyaw_world, parameters)
     walked = None if request.walked is None else _rest(request.walked, problem)
-    way, end, expansions = find_way(problem if request.walked is None else problem.staying_near(request.walked))
+    try:
+        way, end, expansions = find_way(problem if request.walked is None else problem.staying_near(request.walked))
+    except ServerError as error:
+        return PathPlan(None, np.inf, False, 0, f"planner {parameters.planner}: {error}")
     cost = problem.cost(way)
     if request.walked is not None and walked is not None and end is PathEnd.GOAL:
         walked_cost = problem.cost(walked)
@@ -90,11 +99,40 @@ def find_way(problem: PathProblem) -> tuple[Array, PathEnd, int]:
     if len(points) < 2:
         points = np.array((problem.start[:2], problem.start[:2]))
     end = _end(problem, reached)
+    if p.planner != LATTICE:
+        points = _way_of_ompl(problem, points, end)
     chosen = choose_points(ground.layers, ground.cells, scale, points)
     way = smooth(
         ground.layers, ground.cells, scale, chosen, p.curvature_weight, p.smoothing_spacing, p.smoothing_sweeps
     )
     return way, end, expansions
+
+
+def _way_of_ompl(problem: PathProblem, lattice_way: Array, end: PathEnd) -> Array:
+    """Points of the way that OMPL finds to where the lattice's way ends; that one where it finds nothing cheaper."""
+    p, ground = problem.parameters, problem.ground
+    points = lattice_way.copy()
+    bound = float(way_cost(ground.layers, problem.scale, points))
+    step = points[-1] - points[-2]
+    yaw = problem.goal[2] if end is PathEnd.GOAL else np.arctan2(step[1], step[0])
+    found = ask_ompl(
+        OmplProblem(
+            layers=ground.layers,
+            cells=ground.cells,
+            scale=problem.scale,
+            start=problem.start,
+            goal=np.array((*points[-1], yaw)),
+            planner=p.planner,
+            seed=p.seed,
+            checks=p.termination_checks,
+            bound=bound if p.warm_start else np.inf,
+        )
+    )
+    if found is None:
+        return points
+    if p.warm_start and way_cost(ground.layers, problem.scale, found) > bound:
+        return points
+    return found
 
 
 def _end(problem: PathProblem, reached: bool) -> PathEnd:
