@@ -129,7 +129,12 @@ FIXED_SUBJECTS = (
 def load_configuration(
     preset: str | None = None, assignments: Iterable[str] = (), robot: str = DEFAULT_ROBOT
 ) -> Configuration:
-    """Read the shipped config, a robot and a preset (shipped names or files) and `subject.key=value` assignments.
+    """Read the shipped config, a robot, presets and `subject.key=value` assignments; later ones win.
+
+    Args:
+        preset: shipped names or files, joined by commas.
+        assignments: each `subject.key=value`.
+        robot: a shipped name or a file.
 
     Raises:
         YamlError: with every problem found, each at its place; an assignment's place is `--set`.
@@ -138,7 +143,7 @@ def load_configuration(
     layers = [
         _config_files(),
         _robot(robot, problems),
-        {} if preset is None else _named_layer("preset", preset, problems)[1],
+        *(_named_layer("preset", name, problems)[1] for name in (preset.split(",") if preset else ())),
         _assignments(assignments, problems),
     ]
     instances = {}

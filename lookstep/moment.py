@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from behaviors import JobRecord, LogLine, Tree
+from behaviors.halt import HaltCause
 from sim_envs.worlds import SimulatedWorld
 from skills.walking import ControlSample, RobotState, StepEvent, WalkingStatus
 
@@ -35,6 +36,11 @@ class Moment:
     samples: tuple[ControlSample, ...]
     jobs: tuple[JobRecord, ...]
     log: tuple[LogLine, ...]
+
+    @property
+    def blocked(self) -> bool:
+        """Whether a leaf has said in this tick that the way is blocked."""
+        return any(halt.cause is HaltCause.BLOCKED for halt in self.tree.context.halts)
 
 
 class Observer(Protocol):

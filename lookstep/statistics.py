@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections import Counter
 from typing import Any
 
 import numpy as np
 
+from behaviors import Outcome
 from behaviors.halt import HaltCause
 from lookstep.configuration import Configuration
 from lookstep.control_health import ControlHealth
@@ -25,7 +27,7 @@ from sim_envs.judge import (
     support_fraction,
 )
 from sim_envs.worlds import SimulatedWorld
-from skills.footsteps import FootstepPlan, PlanOutcome
+from skills.footsteps import FootstepPlan, PlanOutcome, Stance
 from skills.geometry import Array, Pose, contains_points
 from skills.regions import PlanarRegions, RegionExtraction
 from skills.walking import StepEvent, StepEventKind, WalkingPhase
@@ -61,17 +63,22 @@ class Statistics:
         self._frames: dict[int, PlanarRegions] = {}
         self._last_plan: FootstepPlan | None = None
         self._in_view: list[bool] = []
+        self._gave_up = False
         self._first_time = self._last_time = world.time
-        self._first_step_time: float | None = None
+        self._first_transfer_time: float | None = None
+        # When and where (mid-feet) the first foot lifted off and the last one landed, on the truth.
+        self._lift_off: tuple[float, Array] | None = None
+        self._touchdown: tuple[float, Array] | None = None
         self._start_world = self._end_world = world.true_state().stance.mid_feet
 
     def observe(self, moment: Moment) -> None:
         """Take note of one tick."""
         self._last_time, self._end_world = moment.time, moment.state.stance.mid_feet
+        self._gave_up = moment.tree.outcome is Outcome.FAILURE and moment.blocked
         self._note_moved_boxes(moment)
         self._note_phase(moment)
         for event in moment.events:
-            self._note_step(event)
+            self._note_step(event, moment.state.stance)
         self._note_support(moment)
         self._accounts.take(moment.jobs)
         for job in moment.jobs:
@@ -85,19 +92,21 @@ class Statistics:
         """The figures so far."""
         duration = self._last_time - self._first_time
         distance = float(np.linalg.norm((self._end_world - self._start_world)[:2]))
-        pauses = find_pauses(self._phases, self._nominal_transfer, self._judge)
-        first = self._first_step_time
+        pauses = find_pauses(self._explained_phases(), self._nominal_transfer, self._judge)
+        lift_off, touchdown = self._lift_off, self._touchdown
         return Figures(
             duration_s=round(duration, 3),
             distance_m=round(distance, 3),
             speed_mps=round(distance / duration, 4) if duration > 0 else 0.0,
+            walking_speed_mps=None if lift_off is None or touchdown is None else _speed(lift_off, touchdown),
             steps=count_steps(self._judgements),
             pauses=PauseCounts(
                 count=len(pauses),
                 total_s=round(sum(pause.duration for pause in pauses), 3),
                 causes=dict(sorted(Counter(pause.cause.value for pause in pauses).items())),
             ),
-            first_step_after_s=None if first is None else round(first - self._first_time, 3),
+            first_transfer_after_s=self._after_goal(self._first_transfer_time),
+            first_step_after_s=None if lift_off is None else self._after_goal(lift_off[0]),
             plan=_timing(self._jobs["PlanFootsteps"]),
             regions=_timing(self._jobs["ExtractRegions"]),
             deadlines=self._accounts.report(),
@@ -106,6 +115,16 @@ class Statistics:
             foothold_error_m=round(float(np.median(self._foothold_errors)), 6) if self._foothold_errors else None,
             control=self._health.figures(),
         )
+
+    def _explained_phases(self) -> list[PhaseSample]:
+        """The phases; whoever has found in the end that the way is blocked has waited for that since the last step."""
+        since = self._first_time if self._touchdown is None else self._touchdown[0]
+        if not self._gave_up:
+            return self._phases
+        return [dataclasses.replace(sample, blocked=sample.blocked or sample.time >= since) for sample in self._phases]
+
+    def _after_goal(self, time: float | None) -> float | None:
+        return None if time is None else round(time - self._first_time, 3)
 
     def _note_moved_boxes(self, moment: Moment) -> None:
         poses = moment.world.box_poses()
@@ -122,6 +141,8 @@ class Statistics:
 
     def _note_phase(self, moment: Moment) -> None:
         status = moment.status
+        if status.phase is WalkingPhase.TRANSFER and self._first_transfer_time is None:
+            self._first_transfer_time = moment.time
         overdue = status.phase is WalkingPhase.TRANSFER and status.phase_elapsed > status.phase_duration + 1e-6
         last = self._last_plan
         arrived = last is not None and last.outcome is PlanOutcome.GOAL_REACHED and status.current_step is None
@@ -137,13 +158,16 @@ class Statistics:
             )
         )
 
-    def _note_step(self, event: StepEvent) -> None:
+    def _note_step(self, event: StepEvent, true_stance: Stance) -> None:
         step = event.step
         if event.kind is StepEventKind.STARTED:
-            self._first_step_time = event.time if self._first_step_time is None else self._first_step_time
+            if self._lift_off is None:
+                self._lift_off = (event.time, self._footholds.mid_feet)
             self._lift_off_times[step.sequence_id] = event.time
             return
         self._foothold_errors.append(float(np.linalg.norm(event.T_world_sole.p - step.T_world_sole.p)))
+        # Events are the robot's estimate, the judge takes the truth, at the end of the tick in which the foot landed.
+        landed = true_stance.sole(step.side)
         # A step begins where its foot landed last: at lift-off the heel may be up already.
         true_step = TrueStep(
             sequence_id=step.sequence_id,
@@ -152,9 +176,10 @@ class Statistics:
             end_time=event.time,
             T_world_stance=self._footholds.sole(step.side.opposite),
             T_world_swing_start=self._footholds.sole(step.side),
-            T_world_swing_end=event.T_world_sole,
+            T_world_swing_end=landed,
         )
-        self._footholds = self._footholds.with_sole(step.side, event.T_world_sole)
+        self._footholds = self._footholds.with_sole(step.side, landed)
+        self._touchdown = (event.time, self._footholds.mid_feet)
         self._judgements.append(judge_step(true_step, self._sole_size, self._ground, self._moves, self._judge))
 
     def _note_support(self, moment: Moment) -> None:
@@ -193,6 +218,11 @@ def _on_regions(points_world: Array, regions: PlanarRegions) -> Array:
         near = np.abs(points[:, 2]) <= _VIEW_DISTANCE
         found |= near & contains_points(region.hull_region, points[:, :2])
     return found
+
+
+def _speed(start: tuple[float, Array], end: tuple[float, Array]) -> float:
+    """Straight way over time between two (time, place)."""
+    return round(float(np.linalg.norm((end[1] - start[1])[:2])) / (end[0] - start[0]), 4)
 
 
 def _timing(jobs: list[tuple[float, float]]) -> SkillTiming:

@@ -24,6 +24,7 @@ class Outcome(Enum):
 
     GOAL_REACHED = "goal_reached"
     FELL = "fell"
+    BLOCKED = "blocked"
     TIMEOUT = "timeout"
     STOPPED = "stopped"
     ERROR = "error"
@@ -43,6 +44,8 @@ class SkillTiming:
     """Compute times of one skill; a deadline miss is a compute time over its budget."""
 
     count: int
+    mean_ms: float | None
+    sd_ms: float | None
     median_ms: float | None
     p99_ms: float | None
     budget_ms: float | None
@@ -52,10 +55,12 @@ class SkillTiming:
     def of(cls, compute_times: list[float], budgets: list[float]) -> SkillTiming:
         """The statistics of jobs by their compute times and budgets [s]."""
         if not compute_times:
-            return cls(0, None, None, None, 0)
+            return cls(0, None, None, None, None, None, 0)
         misses = sum(used > budget for used, budget in zip(compute_times, budgets, strict=True))
         return cls(
             count=len(compute_times),
+            mean_ms=round(1e3 * float(np.mean(compute_times)), 3),
+            sd_ms=round(1e3 * float(np.std(compute_times)), 3),
             median_ms=round(1e3 * float(np.median(compute_times)), 3),
             p99_ms=round(1e3 * float(np.percentile(compute_times, 99)), 3),
             budget_ms=round(1e3 * min(budgets), 3),
@@ -70,8 +75,10 @@ class Figures:
     Attributes:
         duration_s: robot time from the first to the last tick.
         distance_m: straight way of the true mid-feet from first to last; speed_mps: distance over duration.
+        walking_speed_mps: the same from the first lift-off to the last touchdown; None where no step has landed.
         steps: by the paper's definitions (section Results), judged on the truth; pauses likewise.
-        first_step_after_s: robot time from the goal to the first lift-off; None where no step was made.
+        first_transfer_after_s: robot time from the goal until weight shifts to the first stance foot;
+            first_step_after_s: until the first lift-off; None where no step was made.
         plan, regions: compute times of footstep planning and of region extraction.
         deadlines: budget, use and margin of every leaf that computes.
         min_support_fraction: smallest share of a stance sole's area within 1 cm of true ground at mid-stance.
@@ -83,8 +90,10 @@ class Figures:
     duration_s: float
     distance_m: float
     speed_mps: float
+    walking_speed_mps: float | None
     steps: StepCounts
     pauses: PauseCounts
+    first_transfer_after_s: float | None
     first_step_after_s: float | None
     plan: SkillTiming
     regions: SkillTiming
@@ -131,6 +140,23 @@ class Summary(Figures):
         measured = {field.name: table.pop(field.name) for field in dataclasses.fields(Figures)}
         table["outcome"] = self.outcome.value
         return json.dumps({**table, **measured}, indent=2, allow_nan=False) + "\n"
+
+    @classmethod
+    def from_json(cls, text: str) -> Summary:
+        """Read what `to_json` wrote.
+
+        Raises:
+            ValueError: where it is not the summary of a run by this version.
+        """
+        table = json.loads(text)
+        try:
+            table["outcome"] = Outcome(table["outcome"])
+            table["steps"], table["pauses"] = StepCounts(**table["steps"]), PauseCounts(**table["pauses"])
+            table["plan"], table["regions"] = SkillTiming(**table["plan"]), SkillTiming(**table["regions"])
+            table["deadlines"] = tuple(LeafDeadlines(**account) for account in table["deadlines"])
+            return cls(**table)
+        except (KeyError, TypeError) as error:
+            raise ValueError(f"not a summary of this version of lookstep: {error}") from error
 
     def write(self, path: Path) -> None:
         """Write the JSON in one go, so that nobody ever reads half a file."""

@@ -53,11 +53,7 @@ def walk(options: RunOptions, *observers: Observer, inbox: OperatorInbox | None 
     Raises:
         YamlError, UserError: where the input is not usable; nothing has been written then.
     """
-    _check(options)
-    assignments = split_assignments(options.assignments)
-    configuration = load_configuration(options.preset, (*_review(options), *assignments.subjects), options.robot)
-    spec = load_tree(tree_path(options.tree))
-    course = _course(options, assignments.course)
+    assignments, configuration, spec, course = _inputs(options)
     faults = () if options.faults is None else load_faults(options.faults, course)
     course = faulty_course(course, faults)
     world = build_world(course, configuration, options.world, options.seed)
@@ -108,6 +104,23 @@ def walk(options: RunOptions, *observers: Observer, inbox: OperatorInbox | None 
     if options.out is not None:
         summary.write(options.out / "summary.json")
     return summary
+
+
+def check_options(options: RunOptions) -> None:
+    """See whether a walk has all it needs before one of many is made.
+
+    Raises:
+        YamlError, UserError: where the options, a file or a name are not usable.
+    """
+    _inputs(options)
+
+
+def _inputs(options: RunOptions) -> tuple[Assignments, Configuration, TreeSpec, Course]:
+    """What the options name, read."""
+    _check(options)
+    assignments = split_assignments(options.assignments)
+    configuration = load_configuration(options.preset, (*_review(options), *assignments.subjects), options.robot)
+    return assignments, configuration, load_tree(tree_path(options.tree)), _course(options, assignments.course)
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +192,7 @@ def _ending(moment: Moment, time_limit: float) -> tuple[Outcome | None, str]:
     if tree.outcome is TreeOutcome.SUCCESS:
         return Outcome.GOAL_REACHED, "the robot stands at the goal"
     if tree.outcome in (TreeOutcome.FAILURE, TreeOutcome.STOPPED):
-        return Outcome.STOPPED, tree.reason
+        return (Outcome.BLOCKED if moment.blocked else Outcome.STOPPED), tree.reason
     if moment.time >= time_limit:
         return Outcome.TIMEOUT, f"{time_limit:g} s are over; last: {tree.root.reason or 'walking'}"
     return None, ""

@@ -2,7 +2,7 @@
 
 from behaviors.leaves.follow_path import FindSubGoal, GoalReached, PlanBodyPath, WaitForGoal, WatchGoal
 from behaviors.leaves.goals import GiveGoal, WatchCarrot
-from behaviors.leaves.guards import GroundFresh, RobotFallen
+from behaviors.leaves.guards import GroundFresh, NoWayOn, RobotFallen
 from behaviors.leaves.height_map import UpdateHeightMap
 from behaviors.leaves.look import ExtractRegions, RememberGround
 from behaviors.leaves.plan_steps import PlanFootsteps
@@ -15,6 +15,7 @@ __all__ = [
     "GiveGoal",
     "GoalReached",
     "GroundFresh",
+    "NoWayOn",
     "PauseWalking",
     "PlanBodyPath",
     "PlanFootsteps",

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from py_trees.common import Status
 
+from behaviors.halt import HaltCause
 from behaviors.leaf import Leaf
-from behaviors.ports import Input
+from behaviors.leaves.plan_steps import VainAttempts
+from behaviors.ports import Input, OptionalInput
 from behaviors.registry import leaf
 from skills.parameters import parameter, parameters
 from skills.regions import PlanarRegions
@@ -47,3 +49,29 @@ class GroundFresh(Leaf):
         if not self.ground.regions:
             return self.failed("no regions in sight")
         return self.succeeded()
+
+
+@parameters
+class NoWayOnParameters:
+    """When to give up."""
+
+    attempts: int = parameter(
+        20, unit="1", meaning="attempts in a row that must have found no step", minimum=1, maximum=1_000_000
+    )
+
+
+@leaf
+class NoWayOn(Leaf):
+    """Succeeds when so many attempts in a row to plan the next steps were in vain: the way is blocked."""
+
+    Parameters = NoWayOnParameters
+    parameters: NoWayOnParameters
+    vain = OptionalInput(VainAttempts, "attempts in a row that found no step")
+
+    def tick(self) -> Status:
+        """SUCCESS where the robot should give up."""
+        vain, limit = self.vain, self.parameters.attempts
+        if vain is None or vain.count < limit:
+            return self.failed(f"{0 if vain is None else vain.count} of {limit} attempts in a row were in vain")
+        reason = f"blocked: {vain.count} attempts to plan a step were in vain, the last: {vain.reason}"
+        return self.halted(HaltCause.BLOCKED, reason, Status.SUCCESS)

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+from dataclasses import dataclass
 
+import numpy as np
 from py_trees.common import Status
 
 from behaviors.leaf import Call, SkillLeaf, SkillParameters
@@ -14,6 +16,9 @@ from skills.footsteps import FootstepPlan, PlanRequest, plan_on_request
 from skills.parameters import parameter, parameters
 from skills.regions import PlanarRegions
 from skills.walking import WalkingPhase, WalkingStatus
+
+# A body path may be planned anew meanwhile; one whose end has moved less leads to the same goal [m].
+_SAME_GOAL = 0.5
 
 
 @parameters
@@ -26,6 +31,21 @@ class PlanFootstepsParameters(SkillParameters):
     )
 
 
+@dataclass(frozen=True, slots=True)
+class VainAttempts:
+    """Attempts in a row to plan toward one goal that found no step.
+
+    Attributes:
+        count: how many.
+        goal: end of the body path, x and y [m].
+        reason: why the last one found none.
+    """
+
+    count: int
+    goal: tuple[float, float]
+    reason: str
+
+
 @leaf
 class PlanFootsteps(SkillLeaf):
     """Plans at least three steps by A* over the regions; partial plans count, no step at all is a failure."""
@@ -34,6 +54,11 @@ class PlanFootsteps(SkillLeaf):
     ground = Input(PlanarRegions, "planar regions around the robot")
     sub_goal = Input(SubGoal, "where the next steps should lead")
     plan = Output(FootstepPlan, "the next footsteps")
+    vain = Output(VainAttempts, "attempts in a row that found no step; nothing after a plan")
+
+    def setup(self) -> None:
+        """No goal yet."""
+        self._goal = (0.0, 0.0)
 
     def request(self) -> Call | Status:
         """From the imminent stance with the other foot first; with either foot when the robot stands."""
@@ -50,6 +75,8 @@ class PlanFootsteps(SkillLeaf):
             footsteps=self.context.parameters["footsteps"],
             terrain=self.context.parameters["terrain"],
         )
+        x, y = self.sub_goal.path.waypoints_world[-1, :2]
+        self._goal = (float(x), float(y))
         alarm = self.context.executor.alarm(self.parameters.search_time)
         timed = () if alarm is None else (alarm,)
         return self.call(plan_on_request, request, *timed, deadline=self._deadline(status))
@@ -57,9 +84,16 @@ class PlanFootsteps(SkillLeaf):
     def receive(self, result: FootstepPlan) -> Status:
         """Hand an executable plan on."""
         if not result.steps:
+            self.vain = self._once_more(result.reason)
             return self.failed(result.reason)
-        self.plan = result
+        self.plan, self.vain = result, None
         return self.succeeded(result.reason)
+
+    def _once_more(self, reason: str) -> VainAttempts:
+        """One more attempt in vain; toward another goal it is the first."""
+        before = self.vain
+        same = before is not None and np.hypot(*np.subtract(before.goal, self._goal)) < _SAME_GOAL
+        return VainAttempts(before.count + 1 if before is not None and same else 1, self._goal, reason)
 
     def _deadline(self, status: WalkingStatus) -> float | None:
         """When the foot in the air lands: a later plan may find the robot waiting for it."""

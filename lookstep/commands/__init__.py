@@ -6,6 +6,7 @@ from lookstep.commands import (
     convert,
     demo,
     diff,
+    evaluate,
     leaves,
     picture,
     plan,
@@ -22,6 +23,7 @@ from lookstep.commands.command import Command
 COMMANDS: tuple[Command, ...] = (
     demo,
     run,
+    evaluate,
     check,
     tree,
     leaves,

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import json
-from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING
 
 from lookstep.bench.footsteps import command as footsteps
 from lookstep.bench.perception import command as perception
 from lookstep.bench.tree import command as tree
 from lookstep.bench.walking import command as walking
-from lookstep.errors import UserError
+from lookstep.commands.figures import FigureBar, add_figure_options, check_folders, publish
 
 if TYPE_CHECKING:
     from lookstep.bench.subject import Subject
@@ -35,55 +32,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             epilog=f"example:\n  {subject.EXAMPLE}",
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
-        subparser.add_argument("--json", type=Path, metavar="FILE", help="write the figures for programs")
-        subparser.add_argument("--table", type=Path, metavar="FILE", help="write the tables as Markdown")
-        subparser.add_argument("--quick", action="store_true", help="the same figures from less, in under 45 s")
+        add_figure_options(subparser, quick="the same figures from less, in under 45 s")
         subject.add_arguments(subparser)
         subparser.set_defaults(subject=subject)
 
 
 def execute(options: argparse.Namespace) -> int:
     """Measure, print and write."""
-    for option in ("json", "table"):
-        file = getattr(options, option)
-        if file is not None and not file.parent.is_dir():
-            raise UserError(f"--{option} {file}: the folder {file.parent} does not exist")
-    from rich.console import Console
-
-    from lookstep.bench.markdown import markdown
-
-    with _Bar() as bar:
+    check_folders(options, "json", "table")
+    with FigureBar() as bar:
         report = options.subject.measure(options, bar)
-    tables = report.tables()
-    console = Console()
-    for table in tables:
-        console.print(table)
-    if options.json is not None:
-        options.json.write_text(json.dumps(report.as_json(), indent=2, allow_nan=False) + "\n")
-    if options.table is not None:
-        options.table.write_text(markdown(tables))
+    publish(report, options)
     return 0
-
-
-class _Bar:
-    """A progress bar on standard error."""
-
-    def __init__(self) -> None:
-        from rich.console import Console
-        from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
-
-        columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
-        self._progress = Progress(*columns, console=Console(stderr=True), transient=True)
-        self._task = self._progress.add_task("preparing", total=None)
-
-    def __call__(self, doing: str, done: int, total: int) -> None:
-        self._progress.update(self._task, description=doing, completed=done, total=total)
-
-    def __enter__(self) -> _Bar:
-        self._progress.start()
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
-        self._progress.stop()

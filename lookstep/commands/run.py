@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--goal", type=_goal, metavar="X,Y,YAW", help="goal in metres and radians (the course's own)")
     parser.add_argument("--time-limit", type=float, default=defaults.time_limit, help="robot time [s] (%(default)s)")
     parser.add_argument("--robot", default=defaults.robot, help="shipped robot or YAML file (%(default)s)")
-    parser.add_argument("--preset", help="shipped preset or YAML file, such as fast")
+    parser.add_argument("--preset", help="shipped presets or YAML files, joined by commas, such as fast,drift")
     add_assignments(parser, "one parameter: subject.key=value, course.option=value or /node/path.key=value")
     parser.add_argument("--review", action="store_true", help="ask in the terminal before paths and plans are walked")
     parser.add_argument("--faults", type=Path, metavar="FILE", help="inject the faults that a YAML file lists")

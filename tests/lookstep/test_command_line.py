@@ -60,7 +60,7 @@ def test_check_tells_every_problem_of_a_tree_with_its_place(tmp_path, capsys):
 
 
 def test_check_tells_a_course_from_a_tree(capsys):
-    courses = [str(shipped("config", "courses", f"{name}.yaml")) for name in ("stairs", "moved_blocks")]
+    courses = [str(shipped("config", "courses", f"{name}.yaml")) for name in ("stairs", "gaps")]
     assert main(["check", "look_and_step", *courses]) == 0
     told = capsys.readouterr().out
     assert told.count("sound (tree)") == 1

@@ -34,14 +34,16 @@ def test_robot_reaches_the_goal_without_a_pause(course, seed):
     )
 
 
-def test_robot_stops_honestly_where_the_ground_ends(tmp_path):
+def test_robot_ends_as_blocked_and_standing_where_the_ground_ends(tmp_path):
     course = tmp_path / "pier.yaml"
     pads = ((3.0, 0.5), (1.0, 4.0))
     objects = "".join(f"  - {{size: [{length}, 1.2, 0.2], position: [{x}, 0, -0.1]}}\n" for length, x in pads)
     course.write_text(f"start: {{x: 0, y: 0}}\ngoal: {{x: 4, y: 0}}\nobjects:\n{objects}")
-    summary = walk(str(course), time_limit=25.0)
-    assert summary.outcome is Outcome.TIMEOUT
+    summary = walk(str(course), time_limit=40.0)
+    assert summary.outcome is Outcome.BLOCKED
+    assert summary.reason.startswith("blocked: 20 attempts to plan a step were in vain, the last: no way on: ")
     assert 0.5 < summary.distance_m < 2.0
+    assert summary.pauses.causes == {"blocked": 1} and summary.pauses.total_s > 5.0
 
 
 def test_tree_that_succeeds_elsewhere_has_not_reached_the_goal(tmp_path):

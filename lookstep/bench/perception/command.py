@@ -6,6 +6,8 @@ import argparse
 import dataclasses
 from typing import TYPE_CHECKING
 
+from lookstep.arguments import positive
+
 if TYPE_CHECKING:
     from lookstep.bench.subject import Progress, Report
 
@@ -18,7 +20,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the number of frames."""
     parser.add_argument(
         "--frames",
-        type=_positive,
+        type=positive,
         metavar="N",
         help="scenes of each kind that are judged with each noise (50; --quick: 3)",
     )
@@ -33,9 +35,3 @@ def measure(options: argparse.Namespace, progress: Progress) -> Report:
     if options.frames is not None:
         extent = dataclasses.replace(extent, scenes=options.frames)
     return bench_perception(extent, progress)
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"got {text!r}, needs a whole number from 1")
-    return int(text)

@@ -7,7 +7,7 @@ import dataclasses
 import os
 from typing import TYPE_CHECKING
 
-from lookstep.arguments import add_assignments
+from lookstep.arguments import add_assignments, positive
 from lookstep.errors import UserError
 
 if TYPE_CHECKING:
@@ -21,8 +21,8 @@ EXAMPLE = "lookstep bench walking --cases tilted_0.5 push_400 --seeds 10"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare what is tried, how often, and with which parameters."""
     parser.add_argument("--cases", nargs="+", default=[], metavar="CASE", help="only these; an unknown name lists all")
-    parser.add_argument("--seeds", type=_positive, metavar="N", help="at most so many trials a case (--quick: 1)")
-    parser.add_argument("--workers", type=_positive, metavar="N", help="processes that walk at the same time (cores)")
+    parser.add_argument("--seeds", type=positive, metavar="N", help="at most so many trials a case (--quick: 1)")
+    parser.add_argument("--workers", type=positive, metavar="N", help="processes that walk at the same time (cores)")
     parser.add_argument("--push-map", action="store_true", help="also pushes by force and direction, over four phases")
     parser.add_argument("--speed-map", action="store_true", help="also step lengths by timing")
     parser.add_argument("--preset", help="shipped preset or YAML file, as for `run`")
@@ -51,9 +51,3 @@ def measure(options: argparse.Namespace, progress: Progress) -> Report:
         push_map=options.push_map,
         speed_map=options.speed_map,
     )
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"got {text!r}, needs a whole number from 1")
-    return int(text)

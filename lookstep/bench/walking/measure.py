@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -11,12 +12,12 @@ from lookstep.bench.subject import Progress
 from lookstep.bench.walking.cases import CASES, DEFAULT, Case
 from lookstep.bench.walking.known_walks import KnownWalk, block_walk
 from lookstep.bench.walking.maps import maps_of, push_map_trials, speed_map_trials
-from lookstep.bench.walking.pool import run_trials
 from lookstep.bench.walking.report import WalkingReport, successes_of
 from lookstep.bench.walking.solvers import compare_solvers, log_programs
 from lookstep.bench.walking.tick_times import measure_realtime, measure_ticks
-from lookstep.bench.walking.trial import Trial
+from lookstep.bench.walking.trial import Trial, run_trial
 from lookstep.configuration import Configuration
+from lookstep.process_pool import run_in_processes
 
 _MAP_SEEDS = 3
 _LEVELS, _TILT = (0.0, 0.1), float(np.deg2rad(15.0))  # of the blocks on which times are measured
@@ -81,7 +82,7 @@ def bench_walking(
     if speed_map:
         trials += speed_map_trials(_MAP_SEEDS)
     results = []
-    for result in run_trials(trials, configuration, workers):
+    for result in run_in_processes(partial(run_trial, configuration=configuration), trials, workers):
         results.append(result)
         progress(f"walking: {result.case}", len(results) + 3, len(trials) + 3)
     return WalkingReport(successes_of(chosen, results), ticks, realtime, solvers, maps_of(results))

@@ -12,12 +12,12 @@ from rich.table import Table
 
 from lookstep.bench.machine import machine
 from lookstep.bench.walking.cases import Case
-from lookstep.bench.walking.intervals import wilson_interval
 from lookstep.bench.walking.maps import WalkingMap
 from lookstep.bench.walking.solvers import SolverFigures
 from lookstep.bench.walking.tick_times import RealtimeFactor, TickTimes
 from lookstep.bench.walking.trial import TrialResult
 from lookstep.summary import installed_versions
+from lookstep.wilson_interval import wilson_interval
 
 
 @dataclass(frozen=True, slots=True)

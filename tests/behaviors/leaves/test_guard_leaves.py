@@ -6,6 +6,7 @@ import pytest
 from scripted_walk import WalkingRobot, ground, status_and_reason, step, tree_of
 
 from behaviors import Status
+from behaviors.leaves.plan_steps import VainAttempts
 from skills.regions import PlanarRegions
 
 GROUND_FRESH = "GroundFresh: {in: [ground], max_age: 1.5}"
@@ -48,3 +49,21 @@ def test_a_robot_on_its_feet_has_not_fallen(do):
     robot = WalkingRobot()
     do(robot)
     assert status_and_reason(tree_of("RobotFallen: {}", robot))[0] is Status.FAILURE
+
+
+@pytest.mark.parametrize(
+    ("count", "status", "reason"),
+    [
+        (4, Status.FAILURE, "4 of 5 attempts in a row were in vain"),
+        (5, Status.SUCCESS, "blocked: 5 attempts to plan a step were in vain, the last: no way on"),
+    ],
+)
+def test_the_way_is_blocked_after_so_many_attempts_in_vain(count, status, reason):
+    vain = VainAttempts(count, (4.0, 0.0), "no way on")
+    tree = tree_of("NoWayOn: {in: [vain], attempts: 5}", WalkingRobot(), vain=vain)
+    assert status_and_reason(tree) == (status, reason)
+
+
+def test_the_way_is_not_blocked_before_anything_was_planned():
+    tree = tree_of("NoWayOn: {attempts: 5}", WalkingRobot())
+    assert status_and_reason(tree) == (Status.FAILURE, "0 of 5 attempts in a row were in vain")

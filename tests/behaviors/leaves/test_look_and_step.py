@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scripted_walk import PARAMETERS, WalkingRobot, goal, ground, plan, step, tick
+from scripted_walk import PARAMETERS, WalkingRobot, blocked_plan, goal, ground, plan, step, tick
 
 from behaviors import JobOutcome, Outcome, Status, Tree, load_tree
 from behaviors.leaves import look, plan_steps
@@ -188,3 +188,16 @@ def test_the_walk_ends_when_the_robot_stands_at_the_goal_and_a_later_goal_is_ano
     tree.send(goal(8.0))
     walk_on(tree, 50)
     assert len(robot.commands) == sent
+
+
+def test_a_robot_that_finds_no_way_on_stands_and_ends_with_the_reason(tree, robot, monkeypatch):
+    begin(tree, robot)
+    robot.swing(step(0), 0.6)
+    monkeypatch.setattr(plan_steps, "plan_on_request", lambda request: blocked_plan())
+    walk_on(tree, 10 * PLAN_PERIOD_TICKS)
+    robot.stand(last=step(0))
+    walk_on(tree, 9 * PLAN_PERIOD_TICKS)
+    assert tree.outcome is Outcome.RUNNING
+    walk_on(tree, 2 * PLAN_PERIOD_TICKS)
+    assert tree.outcome is Outcome.FAILURE
+    assert tree.reason == f"blocked: 20 attempts to plan a step were in vain, the last: {blocked_plan().reason}"

@@ -16,7 +16,7 @@ tree: planning
 ports: {in: {ground: PlanarRegions, sub_goal: SubGoal}}
 root:
   loop_forever:
-    PlanFootsteps: {in: [ground, sub_goal], out: [plan], latency: 0.2}
+    PlanFootsteps: {in: [ground, sub_goal], out: [plan, vain], latency: 0.2}
 """
 
 
@@ -105,6 +105,25 @@ def test_a_plan_without_steps_fails_with_the_planners_reason(tree, monkeypatch):
     node = tree.node("/planning/plan_footsteps")
     assert (node.status, node.reason) == (Status.FAILURE, "no way on: no footholds lead to the sub-goal")
     assert tree.blackboard["plan"] is None
+
+
+def test_attempts_in_vain_are_counted_until_a_plan_or_another_goal(tree, robot, requests, monkeypatch):
+    answer = plan_steps.plan_on_request
+    monkeypatch.setattr(plan_steps, "plan_on_request", lambda request: blocked_plan())
+    counts = []
+    for length in (4.0, 4.0, 4.3, 6.0, 6.0):
+        tree.set_input("sub_goal", sub_goal(path(length), robot.status().imminent_stance, PARAMETERS["sub_goal"]))
+        finish(tree)
+        tick(tree)
+        counts.append(tree.blackboard["vain"].count)
+    # The fourth was asked for before the goal was another.
+    assert counts == [1, 2, 3, 4, 1]
+    assert tree.blackboard["vain"].reason == blocked_plan().reason
+    monkeypatch.setattr(plan_steps, "plan_on_request", answer)
+    finish(tree)
+    tick(tree)
+    finish(tree)
+    assert tree.blackboard["vain"] is None
 
 
 def test_a_plan_for_a_foot_in_the_air_is_needed_when_it_lands(tree, robot):

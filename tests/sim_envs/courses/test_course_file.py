@@ -55,12 +55,13 @@ def test_events_of_one_box_follow_each_other(tmp_path, monkeypatch):
     assert [event.T_world_box.p[2] for event in course.events] == [0.5, 2.5]
 
 
-def test_a_generator_in_a_file_takes_the_seed_of_the_run():
-    moved, plain = load_course("moved_blocks", 5), load_course("rough", 5)
-    assert [box.T_world_box.p.tolist() for box in moved.boxes] == [box.T_world_box.p.tolist() for box in plain.boxes]
-    assert moved.goal == plain.goal
-    assert moved.name == "moved_blocks"
-    assert len(moved.events) == 5
+def test_a_generator_in_a_file_takes_the_seed_of_the_run(tmp_path, monkeypatch):
+    text = "generator: {name: rough}\nevents:\n- {box: block_r04_c1, distance: 1.0, move_by: [0, 0, 0.08]}\n"
+    course, plain = load_text(text, tmp_path, monkeypatch, seed=5), load_course("rough", 5)
+    assert [box.T_world_box.p.tolist() for box in course.boxes] == [box.T_world_box.p.tolist() for box in plain.boxes]
+    assert course.goal == plain.goal
+    assert course.name == "c"
+    assert [event.box for event in course.events] == ["block_r04_c1"]
 
 
 GOOD_ENDS = "start: {x: 0, y: 0}\ngoal: {x: 0, y: 0}\n"
@@ -104,7 +105,7 @@ BROKEN = {
         'c.yaml:1:1: missing key "goal"\n'
         'c.yaml:1:1: missing key "start"\n'
         'c.yaml:1:19: generator.name: got "ruogh"; did you mean "rough"? '
-        "(generators: flat, uneven_flat, rough, rough_wide)"
+        "(generators: flat, uneven_flat, rough, rough_wide, moved_blocks)"
     ),
     "generator: {name: flat, width: 99, lenght: 3}": (
         'c.yaml:1:1: missing key "goal"\n'

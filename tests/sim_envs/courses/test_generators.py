@@ -49,7 +49,7 @@ def test_rough_rows_differ_by_what_a_biped_steps(seed):
     assert abs(height[-1]).max() < 0.10
 
 
-@pytest.mark.parametrize("name", ["flat", "uneven_flat", "rough", "rough_wide"])
+@pytest.mark.parametrize("name", ["flat", "uneven_flat", "rough", "rough_wide", "moved_blocks"])
 def test_same_seed_gives_the_same_course(name):
     def everything(seed):
         course = load_course(name, seed)
@@ -121,6 +121,52 @@ def test_missing_blocks_leave_one_in_every_row(share):
         assert len(set(rows)) == ROWS
 
 
+@pytest.mark.parametrize("count", [1, 3])
+def test_missing_rows_are_in_the_middle_half_and_the_rest_is_the_same_course(count):
+    gone_somewhere = set()
+    for seed in range(10):
+        whole, course = load_course("rough", seed), load_course("rough", seed, missing_rows=count)
+        left = {box.name: box for box in course.boxes}
+        gone = {int(box.name.split("_")[1][1:]) for box in blocks(whole) if box.name not in left}
+        assert len(gone) == count and min(gone) >= ROWS // 4 and max(gone) < ROWS - ROWS // 4
+        assert len(blocks(course)) == (ROWS - count) * COLUMNS
+        assert all(box.T_world_box.p.tobytes() == left[box.name].T_world_box.p.tobytes() for box in whole.boxes
+                   if box.name in left)  # fmt: skip
+        x = 0.5 + (np.array(sorted(gone)) + 0.5) * PITCH
+        assert np.all(np.isneginf(Ground(course.boxes).ground_height(np.column_stack((x, np.zeros(count))))))
+        gone_somewhere |= gone
+    assert len(gone_somewhere) > 3
+
+
+def rows_of(names):
+    return sorted({int(name.split("_")[1][1:]) for name in names})
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_moved_blocks_are_the_rough_course_before_or_after(seed):
+    """Blocks that move begin there, blocks that appear end there, blocks that vanish end in the pit."""
+    rough = {box.name: box.T_world_box.p for box in load_course("rough", seed).boxes}
+    course = load_course("moved_blocks", seed)
+    first = {box.name: box.T_world_box.p for box in course.boxes}
+    last = {event.box: event.T_world_box.p for event in course.events}
+    assert len(last) == len(course.events) and set(first) == set(rough)
+    appear = {name for name, p in last.items() if p[2] - first[name][2] > 0.5}
+    vanish = {name for name, p in last.items() if p[2] - first[name][2] < -0.5}
+    move = set(last) - appear - vanish
+    for name in rough:
+        assert (last if name in appear else first)[name].tobytes() == rough[name].tobytes()
+    shifts = np.array([last[name][2] - first[name][2] for name in move])
+    assert np.all((np.abs(shifts) >= 0.04) & (np.abs(shifts) <= 0.08))
+    # Two rows wide, so that no step passes them by; where one cannot step, another column is free.
+    rows = rows_of(move)
+    assert len(rows) == 4 and rows[1] == rows[0] + 1 and rows[3] == rows[2] + 1
+    assert {name for name in first if name.startswith("block_") and rows_of([name])[0] in rows} <= move
+    for gone in (appear, vanish):
+        columns = [name.split("_")[2] for name in gone if name.startswith("block_")]
+        assert len(rows_of(gone)) == 2 and len(set(columns)) == (2 if gone is appear else 1)
+    assert all(event.distance == 1.0 for event in course.events)
+
+
 def test_unusable_names_and_options_say_what_is_allowed():
     with pytest.raises(CourseError, match=r'unknown course "ruogh"; did you mean "rough"\? \(courses: flat, .*stairs'):
         load_course("ruogh")
@@ -130,6 +176,10 @@ def test_unusable_names_and_options_say_what_is_allowed():
         load_course("rough", tilted_share=2)
     with pytest.raises(CourseError, match="goal_y: got 2, the pad reaches"):
         load_course("rough", goal_y=2.0)
+    with pytest.raises(CourseError, match="missing_rows: got 3, 4 rows can lack 2"):
+        load_course("rough", rows=4, missing_rows=3)
+    with pytest.raises(CourseError, match="rows: got 12, needs at least 18 for blocks to move"):
+        load_course("moved_blocks", rows=12)
     with pytest.raises(CourseError, match="above tilt_maximum"):
         load_course("rough", tilt_minimum=0.4)
     with pytest.raises(CourseError, match='course "stairs" is a file and takes no options, got peak'):

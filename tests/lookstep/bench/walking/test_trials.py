@@ -7,11 +7,11 @@ import pytest
 from scipy.stats import binomtest
 
 from lookstep.bench.walking.cases import CASES
-from lookstep.bench.walking.intervals import wilson_interval
 from lookstep.bench.walking.known_walks import KnownWalk
 from lookstep.bench.walking.pushes import Push, force_at, random_pushes
 from lookstep.bench.walking.trial import run_trial, write_limited_robot
 from lookstep.configuration import load_configuration
+from lookstep.wilson_interval import wilson_interval
 from sim_envs.robot import RobotDescription
 from skills.walking import RobotModel
 
