@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from enum import Enum
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any, get_args, get_origin, get_type_hints
 
 import numpy as np
 
@@ -148,14 +149,9 @@ class Summary(Figures):
         Raises:
             ValueError: where it is not the summary of a run by this version.
         """
-        table = json.loads(text)
         try:
-            table["outcome"] = Outcome(table["outcome"])
-            table["steps"], table["pauses"] = StepCounts(**table["steps"]), PauseCounts(**table["pauses"])
-            table["plan"], table["regions"] = SkillTiming(**table["plan"]), SkillTiming(**table["regions"])
-            table["deadlines"] = tuple(LeafDeadlines(**account) for account in table["deadlines"])
-            return cls(**table)
-        except (KeyError, TypeError) as error:
+            return _restored(cls, json.loads(text))
+        except (AttributeError, KeyError, TypeError) as error:
             raise ValueError(f"not a summary of this version of lookstep: {error}") from error
 
     def write(self, path: Path) -> None:
@@ -163,6 +159,21 @@ class Summary(Figures):
         partial = path.with_suffix(path.suffix + ".partial")
         partial.write_text(self.to_json())
         partial.replace(path)
+
+
+def _restored(hint: Any, value: Any) -> Any:
+    """A value of a type from what JSON has kept of it."""
+    arguments = get_args(hint)
+    if dataclasses.is_dataclass(hint) and isinstance(hint, type):
+        hints = get_type_hints(hint)
+        return hint(**{key: _restored(hints[key], part) for key, part in value.items()})
+    if isinstance(hint, type) and issubclass(hint, Enum):
+        return hint(value)
+    if get_origin(hint) is tuple:
+        return tuple(_restored(arguments[0], part) for part in value)
+    if type(None) in arguments:
+        return None if value is None else _restored(arguments[0], value)
+    return value
 
 
 def installed_versions() -> dict[str, str]:

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from lookstep.control_health import ControlFigures
+from lookstep.deadlines import LeafDeadlines
 from lookstep.evaluation.run_row import RunRow
 from lookstep.options import RunOptions
 from lookstep.summary import Outcome, PauseCounts, SkillTiming, Summary
@@ -20,6 +22,20 @@ def row(options: RunOptions, **figures) -> RunRow:
 def summary(options: RunOptions, **figures) -> Summary:
     """Figures of a walk of 20 steps, but for what is given."""
     timing = SkillTiming.of([0.01, 0.02, 0.03], [0.1, 0.1, 0.1])
+    account = LeafDeadlines(
+        leaf="/walk/plan",
+        count=3,
+        cancelled=0,
+        budget_ms=200.0,
+        used_ms_median=20.0,
+        used_ms_p99=30.0,
+        used_ms_most=30.0,
+        margin_ms_least=170.0,
+        misses=0,
+        landing_s_median=None,
+        landing_s_least=None,
+        late=0,
+    )
     known: dict[str, Any] = dict(
         outcome=Outcome.GOAL_REACHED,
         reason="the robot stands at the goal",
@@ -43,7 +59,8 @@ def summary(options: RunOptions, **figures) -> Summary:
         first_step_after_s=0.6,
         plan=timing,
         regions=timing,
-        deadlines=(),
+        deadlines=(account,),
+        control=ControlFigures(10_000, 1, 0, 0.05, 0.002, 0.02, 0, 0.6),
         min_support_fraction=0.95,
         view_fraction=0.8,
         foothold_error_m=0.001,
