@@ -27,6 +27,7 @@ from skills.body_path import Goal, PathRequest, plan_body_path, straight_path, s
 from skills.footsteps import Side, plan_footsteps, plan_from_stance, stand_on, terrain_ahead
 from skills.geometry import DepthImage, Pose
 from skills.height_map import HeightMapper
+from skills.kernel_locator import kernels_hash
 from skills.kernels import kernel_cache
 from skills.regions import MapParameters, PlanarRegion, PlanarRegions, RegionMemory, examine_regions, remember
 from skills.regions.extraction import polygons_of
@@ -34,8 +35,6 @@ from skills.regions.growing import grow_regions
 from skills.regions.own_body import without_body
 from skills.regions.patches import fit_patches
 from skills.regions.refinement import refine_regions
-
-_COMPILED = "compiled"  # empty file in the cache of kernels: all of them are in there
 
 
 def warm_up(configuration: Configuration) -> None:
@@ -69,13 +68,18 @@ def _run_kernels(configuration: Configuration) -> None:
     plan = plan_from_stance(terrain, stance, goal, configuration.footsteps)
     world.send_footsteps(plan.steps)
     world.advance(0.1)
-    (kernel_cache() / _COMPILED).touch()
+    compiled_mark().touch()
+
+
+def compiled_mark() -> Path:
+    """Empty file in the cache of kernels: all of them are in there as they are now."""
+    return kernel_cache() / f"compiled-{kernels_hash()}"
 
 
 @contextmanager
 def _alone() -> Iterator[None]:
     """Keep other runs from writing the cache at the same time: numba's index takes one writer."""
-    if (kernel_cache() / _COMPILED).exists():
+    if compiled_mark().exists():
         yield
         return
     kernel_cache().mkdir(parents=True, exist_ok=True)
@@ -87,7 +91,7 @@ def _alone() -> Iterator[None]:
 @contextmanager
 def _second_process() -> Iterator[None]:
     """Let another process compile what it can meanwhile, where there is something to compile and a core to do it."""
-    if (kernel_cache() / _COMPILED).exists() or len(os.sched_getaffinity(0)) < 2:
+    if compiled_mark().exists() or len(os.sched_getaffinity(0)) < 2:
         yield
         return
     # What a compiler makes is kept; looking again and again for what of it is garbage takes a tenth of the time.

@@ -1,8 +1,7 @@
 """The one way in which lookstep compiles its hot loops.
 
 Every kernel is compiled by numba to machine code that releases the GIL, is bit-reproducible (no `fastmath`, no
-`parallel`) and is cached on disk. Numba's cache does not notice an edited callee in another file, so the cache folder
-is named by a hash of all sources that hold kernels.
+`parallel`) and is cached on disk; see `kernel_locator`.
 """
 
 import ctypes
@@ -15,7 +14,8 @@ from typing import Any, TypeVar
 _THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 _MMAP_THRESHOLD, _TRIM_THRESHOLD = -3, -1  # options of mallopt(3)
 _KEPT = 1 << 28  # [bytes]
-_KERNEL_FOLDERS = ("skills", "sim_envs", "lookstep")
+# Ours, and where its folder cannot be written, numba's own.
+_LOCATORS = "skills.kernel_locator.KernelCacheLocator,InTreeCacheLocator,UserWideCacheLocator"
 
 
 def prepare_runtime() -> None:
@@ -23,12 +23,19 @@ def prepare_runtime() -> None:
     _keep_freed_memory()
     for variable in _THREAD_VARIABLES:
         os.environ.setdefault(variable, "1")
-    os.environ.setdefault("NUMBA_CACHE_DIR", str(_cache_root() / f"kernels-{_source_hash()}"))
+    os.environ.setdefault("NUMBA_CACHE_DIR", str(_default_cache()))
 
 
 def kernel_cache() -> Path:
     """The folder of the compiled kernels."""
     return Path(os.environ["NUMBA_CACHE_DIR"])
+
+
+def _default_cache() -> Path:
+    """A folder of this checkout in the user's cache: numba takes one writer, and two checkouts may compile at once."""
+    base = os.environ.get("XDG_CACHE_HOME")
+    checkout = hashlib.blake2b(str(Path(__file__).resolve().parents[1]).encode(), digest_size=8).hexdigest()
+    return (Path(base) if base else Path.home() / ".cache") / "lookstep" / f"kernels-{checkout}"
 
 
 def _keep_freed_memory() -> None:
@@ -39,31 +46,12 @@ def _keep_freed_memory() -> None:
             mallopt(option, _KEPT)
 
 
-def _cache_root() -> Path:
-    base = os.environ.get("XDG_CACHE_HOME")
-    return (Path(base) if base else Path.home() / ".cache") / "lookstep"
-
-
-def _source_hash() -> str:
-    digest = hashlib.blake2b(digest_size=8)
-    root = Path(__file__).resolve().parents[1]
-    for folder in _KERNEL_FOLDERS:
-        for source in sorted((root / folder).rglob("*.py")):
-            text = source.read_bytes()
-            if b"skills.kernels" in text:
-                digest.update(str(source.relative_to(root)).encode())
-                digest.update(text)
-    return digest.hexdigest()
-
-
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 def kernel(function: F) -> F:
     """Compile a function over scalars and arrays to machine code on first call."""
-    import numba
-
-    return numba.njit(cache=True, nogil=True, fastmath=False, error_model="numpy")(function)  # type: ignore[return-value]
+    return _compiled(function)
 
 
 def leaf_kernel(function: F) -> F:
@@ -71,6 +59,11 @@ def leaf_kernel(function: F) -> F:
 
     It goes without counting references to its arrays, which costs more than a short loop does.
     """
+    return _compiled(function, _nrt=False)
+
+
+def _compiled(function: F, **options: bool) -> F:
     import numba
 
-    return numba.njit(cache=True, nogil=True, fastmath=False, error_model="numpy", _nrt=False)(function)  # type: ignore[return-value]
+    numba.config.CACHE_LOCATOR_CLASSES = _LOCATORS  # type: ignore[attr-defined]
+    return numba.njit(cache=True, nogil=True, fastmath=False, error_model="numpy", **options)(function)  # type: ignore[return-value]

@@ -6,8 +6,7 @@ import sys
 from numba.core.dispatcher import Dispatcher
 
 from lookstep.configuration import load_configuration
-from lookstep.warm_up import take_over, warm_up, warm_up_beside
-from skills.kernels import kernel_cache
+from lookstep.warm_up import compiled_mark, take_over, warm_up, warm_up_beside
 
 
 def compiled() -> dict[str, int]:
@@ -31,7 +30,7 @@ def test_the_second_process_compiles_nothing_but_what_a_walk_uses():
 
 def test_what_is_compiled_is_known_and_the_collector_runs_again():
     warm_up(load_configuration())
-    assert (kernel_cache() / "compiled").exists()
+    assert compiled_mark().exists()
     assert gc.isenabled()
 
 
