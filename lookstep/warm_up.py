@@ -99,6 +99,7 @@ def _second_process() -> Iterator[None]:
     # Two processes must not write one cache at a time: each names what it writes without asking the other.
     beside = kernel_cache() / "beside"
     try:
+        link_known(beside)
         environment = {**os.environ, "NUMBA_CACHE_DIR": str(beside)}
         # Where the other fails, its kernels are compiled here.
         command = (sys.executable, "-m", __name__)
@@ -108,6 +109,13 @@ def _second_process() -> Iterator[None]:
     finally:
         gc.enable()
         shutil.rmtree(beside, ignore_errors=True)
+
+
+def link_known(beside: Path) -> None:
+    """Give another cache what is compiled already; numba replaces files and never writes into one."""
+    for folder in kernel_cache().iterdir():
+        if folder.is_dir() and folder != beside:
+            shutil.copytree(folder, beside / folder.name, copy_function=os.link, dirs_exist_ok=True)
 
 
 def take_over(beside: Path) -> None:

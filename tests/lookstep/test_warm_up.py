@@ -6,7 +6,7 @@ import sys
 from numba.core.dispatcher import Dispatcher
 
 from lookstep.configuration import load_configuration
-from lookstep.warm_up import compiled_mark, take_over, warm_up, warm_up_beside
+from lookstep.warm_up import compiled_mark, link_known, take_over, warm_up, warm_up_beside
 
 
 def compiled() -> dict[str, int]:
@@ -48,3 +48,14 @@ def test_a_cache_takes_over_what_it_has_not_itself(tmp_path, monkeypatch):
     texts = {file.name: file.read_text() for file in (cache / "a").iterdir()}
     mine, others = str(cache / "a"), str(beside / "a")
     assert texts == {"f.nbi": mine, "f.1.nbc": mine, "g.nbi": others, "g.1.nbc": others}
+
+
+def test_another_cache_knows_what_is_compiled_already(tmp_path, monkeypatch):
+    cache, beside = tmp_path / "cache", tmp_path / "cache" / "beside"
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache))
+    (cache / "a").mkdir(parents=True)
+    (cache / "a" / "f.nbi").write_text("mine")
+    link_known(beside)
+    assert [file.read_text() for file in beside.rglob("*.nbi")] == ["mine"]
+    take_over(beside)
+    assert (cache / "a" / "f.nbi").read_text() == "mine"
