@@ -161,10 +161,17 @@ def _loop(
             outcome, reason = _ending(moment, options.time_limit)
     except KeyboardInterrupt:
         return _Ending(Outcome.STOPPED, "stopped by the operator", pace.elapsed)
-    rest = float(np.hypot(*(world.true_state().stance.mid_feet[:2] - (goal.x, goal.y))))
+    rest = _distance_to_goal(world, tree, goal)
     if outcome is Outcome.GOAL_REACHED and rest > goal_distance:
         outcome, reason = Outcome.STOPPED, f"the tree has succeeded {rest:.2f} m from the goal"
     return _Ending(outcome, reason, pace.elapsed)
+
+
+def _distance_to_goal(world: SimulatedWorld, tree: Tree, sent: Goal) -> float:
+    """How far the robot is from the nearest goal that the tree holds; from the one it was sent where it holds none."""
+    feet = world.true_state().stance.mid_feet[:2]
+    goals = [value for value in tree.blackboard.values().values() if isinstance(value, Goal)] or [sent]
+    return min(float(np.hypot(*(feet - (goal.x, goal.y)))) for goal in goals)
 
 
 def _moment(world: SimulatedWorld, tree: Tree, health: ControlHealth) -> Moment:

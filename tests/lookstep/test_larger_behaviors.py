@@ -12,6 +12,7 @@ from behaviors import Outcome, Status, draw, load_tree
 from behaviors.interchange import read_written, write_yaml
 from behaviors.operator import Approve, MoveCarrot, Reject, SwitchReview
 from lookstep.options import RunOptions
+from lookstep.summary import Outcome as RunOutcome
 from lookstep.walk import walk
 from skills.body_path import Goal
 from strict_yaml import shipped, shipped_folder
@@ -41,7 +42,7 @@ class Person:
 
 def test_patrol_walks_to_each_waypoint_in_turn():
     around = "/patrol/run_while/repeat/sequence"
-    waypoints = [f"{around}/{name}/give_goal.x={x}" for name, x in (("first", 0.5), ("second", 0.8), ("third", 1.1))]
+    waypoints = [f"{around}/to_{name}.x={x}" for name, x in (("first", 0.5), ("second", 0.8), ("third", 1.1))]
     person = Person()
     summary = walk(RunOptions(tree="patrol", assignments=(SMALL_CAMERA, *waypoints), time_limit=20.0, **FAST), person)
     assert person.outcome is Outcome.SUCCESS, summary.reason
@@ -49,7 +50,8 @@ def test_patrol_walks_to_each_waypoint_in_turn():
     visited = [
         path.removeprefix(f"{around}/") for path, _ in person.ended if path.startswith(around) and path.count("/") == 5
     ]
-    assert visited == ["first", "second", "third"]
+    assert visited == ["to_first", "first", "to_second", "second", "to_third", "third"]
+    assert summary.outcome is RunOutcome.GOAL_REACHED, summary.reason
 
 
 def test_follow_carrot_goes_where_the_operator_leads_and_waits_for_approval():

@@ -35,7 +35,7 @@ def robot(monkeypatch: pytest.MonkeyPatch) -> WalkingRobot:
 
 @pytest.fixture
 def tree(robot: WalkingRobot):
-    settings = {f"{WAY}/there/direct": {"after": 8.0}, f"{WAY}/back/give_goal": {"yaw": 0.0}}
+    settings = {f"{WAY}/there/direct": {"after": 8.0}, f"{WAY}/home": {"yaw": 0.0}}
     tree = Tree(SPEC, robot, parameters=dict(PARAMETERS), settings=settings)
     yield tree
     tree.shutdown()
