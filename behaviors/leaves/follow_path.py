@@ -7,6 +7,7 @@ from py_trees.common import Status
 
 from behaviors.decorators import TIME_TOLERANCE
 from behaviors.leaf import Call, Leaf, SkillLeaf, SkillParameters
+from behaviors.leaves.vain_attempts import VainAttempts
 from behaviors.operator import SendGoal
 from behaviors.ports import Input, Output
 from behaviors.registry import leaf
@@ -137,13 +138,17 @@ class FindSubGoal(Leaf):
 
     path = Input(BodyPath, "way of the body to the goal")
     sub_goal = Output(SubGoal, "where the next steps should lead")
+    vain = Output(VainAttempts, "attempts in a row that found no step: at such an end each is one")
 
     def tick(self) -> Status:
         """SUCCESS with a sub-goal."""
         stance, path = self.context.robot.status().imminent_stance, self.path
         parameters = self.context.parameters["sub_goal"]
         if path.end is not PathEnd.GOAL and path.length - path.project(stance.mid_feet) <= parameters.goal_distance:
-            return self.failed(f"the path ends here, {path.end.value}")
+            reason = f"the path ends here, {path.end.value}"
+            x, y, _ = path.waypoints_world[-1].tolist()
+            self.vain = VainAttempts.after(self.vain, (x, y), reason)
+            return self.failed(reason)
         self.sub_goal = sub_goal(path, stance, parameters)
         return self.succeeded()
 

@@ -6,7 +6,7 @@ from py_trees.common import Status
 
 from behaviors.halt import HaltCause
 from behaviors.leaf import Leaf
-from behaviors.leaves.plan_steps import VainAttempts
+from behaviors.leaves.vain_attempts import VainAttempts
 from behaviors.ports import Input, OptionalInput
 from behaviors.registry import leaf
 from skills.parameters import parameter, parameters

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
 
-import numpy as np
 from py_trees.common import Status
 
 from behaviors.leaf import Call, SkillLeaf, SkillParameters
+from behaviors.leaves.vain_attempts import VainAttempts
 from behaviors.ports import Input, Output
 from behaviors.registry import leaf
 from skills.body_path import SubGoal
@@ -16,9 +15,6 @@ from skills.footsteps import FootstepPlan, PlanRequest, plan_on_request
 from skills.parameters import parameter, parameters
 from skills.regions import PlanarRegions
 from skills.walking import WalkingPhase, WalkingStatus
-
-# A body path may be planned anew meanwhile; one whose end has moved less leads to the same goal [m].
-_SAME_GOAL = 0.5
 
 
 @parameters
@@ -29,21 +25,6 @@ class PlanFootstepsParameters(SkillParameters):
     search_time: float = parameter(
         0.1, unit="s", meaning="time after which a search in realtime ends with the best so far", minimum=0.001
     )
-
-
-@dataclass(frozen=True, slots=True)
-class VainAttempts:
-    """Attempts in a row to plan toward one goal that found no step.
-
-    Attributes:
-        count: how many.
-        goal: end of the body path, x and y [m].
-        reason: why the last one found none.
-    """
-
-    count: int
-    goal: tuple[float, float]
-    reason: str
 
 
 @leaf
@@ -84,16 +65,10 @@ class PlanFootsteps(SkillLeaf):
     def receive(self, result: FootstepPlan) -> Status:
         """Hand an executable plan on."""
         if not result.steps:
-            self.vain = self._once_more(result.reason)
+            self.vain = VainAttempts.after(self.vain, self._goal, result.reason)
             return self.failed(result.reason)
         self.plan, self.vain = result, None
         return self.succeeded(result.reason)
-
-    def _once_more(self, reason: str) -> VainAttempts:
-        """One more attempt in vain; toward another goal it is the first."""
-        before = self.vain
-        same = before is not None and np.hypot(*np.subtract(before.goal, self._goal)) < _SAME_GOAL
-        return VainAttempts(before.count + 1 if before is not None and same else 1, self._goal, reason)
 
     def _deadline(self, status: WalkingStatus) -> float | None:
         """When the foot in the air lands: a later plan may find the robot waiting for it."""

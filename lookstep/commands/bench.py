@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from lookstep.bench.body_path import command as body_path
 from lookstep.bench.footsteps import command as footsteps
 from lookstep.bench.perception import command as perception
 from lookstep.bench.tree import command as tree
@@ -18,7 +19,7 @@ NAME = "bench"
 HELP = "measure one part beside ground truth, baselines and peers"
 EXAMPLE = "lookstep bench perception --quick"
 
-SUBJECTS: tuple[Subject, ...] = (perception, footsteps, walking, tree)
+SUBJECTS: tuple[Subject, ...] = (perception, footsteps, body_path, walking, tree)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -10,6 +10,7 @@ import numpy as np
 
 from sim_envs.courses.block_field import FieldParameters, box_between, field_course, level_block, profile
 from sim_envs.courses.course import Course, CourseError
+from sim_envs.courses.detour import DetourParameters, detour
 from sim_envs.courses.moved_blocks import MovedBlocksParameters, moved_blocks
 from sim_envs.courses.rough import RoughParameters, rough
 from skills.parameters import parameter, parameters
@@ -66,6 +67,7 @@ GENERATORS: dict[str, tuple[Callable[[int, Any], Course], type, dict[str, Any]]]
     "rough": (rough, RoughParameters, {}),
     "rough_wide": (rough, RoughParameters, {"rows": 11, "columns": 10, "peak": 0.2, "goal_y": 1.2}),
     "moved_blocks": (moved_blocks, MovedBlocksParameters, {}),
+    "detour": (detour, DetourParameters, {}),
 }
 """By course name: the generator, its parameter class, and the options in which this course differs from the class."""
 

@@ -15,13 +15,18 @@ from lookstep.replay import ReplayOptions, replay
 from strict_yaml import shipped
 
 WALK = "/look_and_step/walk/sequence/go/walk_to"
+FOLLOW = f"{WALK}/on_the_way/follow_path"
 
 
 @pytest.fixture(scope="module")
 def walked(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A walk over blocks, long enough for two plans."""
     folder = tmp_path_factory.mktemp("walked")
-    assignments = ("camera.resolution=0.3125", "drift.velocity=[0,0.01,0]", f"{WALK}/follow_path.attempts=50")
+    assignments = (
+        "camera.resolution=0.3125",
+        "drift.velocity=[0,0.01,0]",
+        f"{WALK}/on_the_way/follow_path.attempts=50",
+    )
     lookstep.run(course="rough", world="kinematic", seed=3, time_limit=2.4, assignments=assignments, out=folder)
     return folder
 
@@ -37,7 +42,7 @@ def test_played_back_outputs_decide_the_same(walked: Path):
 
 
 def test_an_edited_parameter_is_named_where_it_decides_otherwise(walked: Path):
-    fraction = f"{WALK}/follow_path/selector/go_on/take_a_step/wait_for_swing.fraction"
+    fraction = f"{FOLLOW}/selector/go_on/take_a_step/wait_for_swing.fraction"
     diff = replay(walked, ReplayOptions(assignments=(f"{fraction}=0.2",))).diff
     assert [difference.subject for difference in diff.tree] == [fraction]
     assert diff.first is not None and diff.first_command is not None
@@ -102,7 +107,7 @@ def test_replay_and_diff_exit_with_0_where_runs_are_equal_and_with_1_where_not(w
 
 def test_why_names_who_had_the_say(walked: Path, capsys):
     assert main(["why", str(walked), "--node", "wait_until_standing", "--at", "2"]) == 0
-    assert f"{WALK}/follow_path comes before it in {WALK} (sequence) and is RUNNING" in capsys.readouterr().out
+    assert f"{WALK}/on_the_way comes before it in {WALK} (sequence) and is RUNNING" in capsys.readouterr().out
     assert main(["why", str(walked), "--node", "wait_until_standin", "--at", "2"]) == 2
     assert 'did you mean "wait_until_standing"?' in capsys.readouterr().err
     assert main(["why", str(walked), "--node", "wait_until_standing", "--at", "9"]) == 2

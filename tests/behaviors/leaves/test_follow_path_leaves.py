@@ -108,7 +108,7 @@ def test_the_sub_goal_lies_ahead_of_the_imminent_stance():
     robot = WalkingRobot()
     robot.stand(x=1.0)
     robot.swing(step(0, x=1.4), 0.6)
-    tree = tree_of("FindSubGoal: {in: [path], out: [sub_goal]}", robot, path=path())
+    tree = tree_of("FindSubGoal: {in: [path], out: [sub_goal, vain]}", robot, path=path())
     tick(tree)
     found = tree.blackboard["sub_goal"]
     assert found.start_arc_length == pytest.approx(1.2)
@@ -122,13 +122,14 @@ def test_where_a_path_ends_short_of_the_goal_the_robot_stands_and_says_why(end):
     short = BodyPath(path(2.0).waypoints_world, end=end, goal_world=np.array((4.0, 0.0, 0.0)))
     tree = tree_of("GoalReached: {in: [goal, path]}", robot, path=short, goal=Goal(4.0, 0.0, 0.0))
     assert status_and_reason(tree)[0] is Status.FAILURE
-    tree = tree_of("FindSubGoal: {in: [path], out: [sub_goal]}", robot, path=short)
+    tree = tree_of("FindSubGoal: {in: [path], out: [sub_goal, vain]}", robot, path=short)
     assert status_and_reason(tree) == (Status.FAILURE, f"the path ends here, {end.value}")
+    assert tree.blackboard["vain"].count == 1
 
 
 def test_before_it_is_there_the_robot_walks_on_to_where_a_path_ends_short_of_the_goal():
     short = BodyPath(path(2.0).waypoints_world, end=PathEnd.BORDER, goal_world=np.array((4.0, 0.0, 0.0)))
-    tree = tree_of("FindSubGoal: {in: [path], out: [sub_goal]}", WalkingRobot(), path=short)
+    tree = tree_of("FindSubGoal: {in: [path], out: [sub_goal, vain]}", WalkingRobot(), path=short)
     assert status_and_reason(tree)[0] is Status.SUCCESS
 
 

@@ -6,7 +6,7 @@ import pytest
 from scripted_walk import WalkingRobot, ground, status_and_reason, step, tree_of
 
 from behaviors import Status
-from behaviors.leaves.plan_steps import VainAttempts
+from behaviors.leaves.vain_attempts import VainAttempts
 from skills.regions import PlanarRegions
 
 GROUND_FRESH = "GroundFresh: {in: [ground], max_age: 1.5}"

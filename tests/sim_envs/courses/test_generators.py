@@ -49,7 +49,7 @@ def test_rough_rows_differ_by_what_a_biped_steps(seed):
     assert abs(height[-1]).max() < 0.10
 
 
-@pytest.mark.parametrize("name", ["flat", "uneven_flat", "rough", "rough_wide", "moved_blocks"])
+@pytest.mark.parametrize("name", ["flat", "uneven_flat", "rough", "rough_wide", "moved_blocks", "detour"])
 def test_same_seed_gives_the_same_course(name):
     def everything(seed):
         course = load_course(name, seed)
@@ -186,3 +186,30 @@ def test_unusable_names_and_options_say_what_is_allowed():
         load_course("stairs", peak=1.0)
     with pytest.raises(CourseError, match="got seed -1, needs a whole number from 0"):
         load_course("rough", -1)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_detour_is_walled_in_and_passable_on_one_side_of_the_obstacle(seed):
+    course = load_course("detour", seed)
+    ground = Ground(course.boxes)
+    (obstacle,) = (box for box in course.boxes if box.name == "obstacle")
+
+    def gaps(x: float) -> list[float]:
+        """Widths of what can be walked on across the way at x, from right to left."""
+        y = np.arange(-4.0, 4.0, 0.01)
+        height = ground.ground_height(np.column_stack((np.full_like(y, x), y)))
+        walls = np.flatnonzero(height > 0.9)
+        assert np.all(np.isneginf(height[: walls[0] - 70])) and np.all(np.isneginf(height[walls[-1] + 70 :]))
+        assert np.isfinite(height[walls[0] : walls[-1]]).all()
+        return [width for width in np.diff(y[walls]) if width > 0.02]
+
+    for x in np.arange(-0.7, course.goal[0] + 0.7, 0.1):
+        if abs(x - obstacle.T_world_box.p[0]) > 0.3:
+            assert len(gaps(x)) == 1 and gaps(x)[0] > 2.3
+    narrow, wide = sorted(gaps(obstacle.T_world_box.p[0]))
+    assert narrow < 0.9 and wide > 1.1
+
+
+def test_detour_bends_to_either_side_and_its_obstacle_stands_on_either_side():
+    courses = [load_course("detour", seed) for seed in range(8)]
+    assert {np.sign(course.goal[1]) for course in courses} == {-1.0, 1.0}
