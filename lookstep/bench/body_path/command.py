@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def measure(options: argparse.Namespace, progress: Progress) -> Report:
     """Plan and time."""
-    from lookstep.bench.body_path.report import Extent, bench_body_path
+    from lookstep.bench.body_path import report
     from lookstep.errors import UserError
     from skills.body_path.path_parameters import OMPL_PLANNERS
 
@@ -32,9 +32,9 @@ def measure(options: argparse.Namespace, progress: Progress) -> Report:
     unknown = [name for name in planners if name not in OMPL_PLANNERS]
     if unknown:
         raise UserError(f"--planners: unknown {', '.join(unknown)} (planners: {', '.join(OMPL_PLANNERS)})")
-    usual = Extent(1, 0.5, 60) if options.quick else Extent(5, 10.0, 1000)
+    usual = report.QUICK if options.quick else report.FULL
     seconds = usual.seconds if options.seconds is None else options.seconds
     maps = usual.maps if options.maps is None else options.maps
     if not seconds > 0.0 or maps < 1:
         raise UserError(f"--seconds, --maps: got {seconds:g} and {maps}, need positive numbers")
-    return bench_body_path(planners, Extent(maps, seconds, usual.walls), progress)
+    return report.bench_body_path(planners, report.Extent(maps, seconds, usual.walls), progress)

@@ -37,6 +37,9 @@ class Extent:
     walls: int
 
 
+FULL, QUICK = Extent(5, 10.0, 1000), Extent(1, 0.5, 60)
+
+
 @dataclass(frozen=True, slots=True)
 class WallFigures:
     """What became of paths over many maps.
@@ -91,7 +94,7 @@ class PathReport:
                 "seeds": list(self.walls.touched),
                 "short": self.walls.short,
             },
-            **dataclasses.asdict(self.extent),
+            "compared": {"maps": self.extent.maps, "seconds": self.extent.seconds},
             "machine": machine(),
             "versions": installed_versions(),
         }
@@ -146,6 +149,9 @@ def bench_body_path(planners: Sequence[str], extent: Extent, progress: Progress)
     """Compare planners, and judge paths over many maps."""
     parameters = BodyPathParameters()
     total = extent.maps * len(planners) + extent.walls
+    progress("starting OMPL", 0, total)
+    first = dataclasses.replace(parameters, planner=planners[0], termination_checks=1)
+    plan_body_path(_request(random_map(0), first))
     done, costs, trials = 0, [], []
     for seed in range(extent.maps):
         request = _request(random_map(seed), parameters)
