@@ -39,6 +39,8 @@ from skills.parameters import ParameterError
 from skills.walking import WalkingPhase
 
 TICK_RATE = 50.0
+# Why a run has ended that somebody has broken off.
+INTERRUPTED = "stopped by the operator"
 _FILM_MOST = 50.0  # [Hz]
 
 
@@ -160,7 +162,7 @@ def _loop(
                 observer.observe(moment)
             outcome, reason = _ending(moment, options.time_limit)
     except KeyboardInterrupt:
-        return _Ending(Outcome.STOPPED, "stopped by the operator", pace.elapsed)
+        return _Ending(Outcome.STOPPED, INTERRUPTED, pace.elapsed)
     rest = _distance_to_goal(world, tree, goal)
     if outcome is Outcome.GOAL_REACHED and rest > goal_distance:
         outcome, reason = Outcome.STOPPED, f"the tree has succeeded {rest:.2f} m from the goal"

@@ -16,7 +16,7 @@ from typing import Any
 from lookstep.errors import UserError
 from lookstep.options import RunOptions
 from lookstep.summary import Outcome, Summary
-from lookstep.walk import walk
+from lookstep.walk import INTERRUPTED, walk
 from strict_yaml import YamlError, shipped_folder
 
 # What of a walk's options has a say in how it goes.
@@ -85,13 +85,17 @@ def run(options: RunOptions) -> RunRow:
 
     Raises:
         YamlError, UserError: where the input is not usable.
+        KeyboardInterrupt: where somebody has ended the walk, which says nothing of it.
     """
     try:
-        return RunRow(options=options, code=code_hash(), summary=walk(options))
+        summary = walk(options)
     except (YamlError, UserError):
         raise
     except Exception as error:
         return RunRow(options=options, code=code_hash(), summary=None, error=f"{type(error).__name__}: {error}")
+    if summary.reason == INTERRUPTED:
+        raise KeyboardInterrupt
+    return RunRow(options=options, code=code_hash(), summary=summary)
 
 
 def specification(options: RunOptions) -> str:

@@ -5,13 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from some_walks import row
+from some_walks import row, summary
 
 from lookstep.errors import UserError
 from lookstep.evaluation import run_row
 from lookstep.evaluation.run_row import RowFile, RunRow, read_rows, run, specification
 from lookstep.options import RunOptions
 from lookstep.summary import Outcome, PauseCounts
+from lookstep.walk import INTERRUPTED
 from strict_yaml import YamlError
 
 OPTIONS = RunOptions(course="rough", seed=3, preset="fast", assignments=("course.rows=6",), goal=(2.0, 0.0, 0.1))
@@ -63,6 +64,13 @@ def test_what_breaks_a_walk_off_is_told_in_its_row_but_bad_input_is_not_a_walk(m
     monkeypatch.undo()
     with pytest.raises(YamlError, match="unknown preset"):
         run(RunOptions(preset="fats"))
+
+
+def test_a_walk_that_somebody_has_ended_is_no_row(monkeypatch):
+    ended = summary(OPTIONS, outcome=Outcome.STOPPED, reason=INTERRUPTED)
+    monkeypatch.setattr(run_row, "walk", lambda options: ended)
+    with pytest.raises(KeyboardInterrupt):
+        run(OPTIONS)
 
 
 def _fields(options: RunOptions) -> dict[str, Any]:
