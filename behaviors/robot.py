@@ -11,6 +11,7 @@ from typing import Protocol
 from skills.footsteps.footstep import Footstep
 from skills.geometry.camera import DepthImage
 from skills.geometry.lidar import LidarScan
+from skills.geometry.pose import Pose
 from skills.walking.control_sample import ControlSample
 from skills.walking.walking_state import RobotState, StepEvent, WalkingStatus
 
@@ -73,4 +74,12 @@ class World(Protocol):
 
     def box_poses(self) -> dict[str, tuple[tuple[float, ...], tuple[float, ...]]]:
         """Position (3) [m] and quaternion wxyz (4) of every object of the course by name."""
+        ...
+
+    def move_box(self, name: str, T_world_box: Pose) -> None:
+        """Put an object of the course elsewhere.
+
+        Raises:
+            ValueError: where there is none of this name.
+        """
         ...

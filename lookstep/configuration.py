@@ -15,6 +15,7 @@ from typing import Any, get_type_hints
 
 from behaviors.operator import ReviewParameters
 from lookstep.control_health import ControlHealthParameters
+from lookstep.operator_link import OperatorLinkParameters
 from lookstep.options import DEFAULT_ROBOT
 from sim_envs.judge import JudgeParameters
 from sim_envs.robot import SHIPPED_ROBOTS, RobotDescription
@@ -87,6 +88,7 @@ class Configuration:
     footsteps: FootstepParameters
     terrain: TerrainParameters
     review: ReviewParameters
+    operator_link: OperatorLinkParameters
 
     @property
     def walker(self) -> WalkerParameters:

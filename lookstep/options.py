@@ -31,6 +31,7 @@ class RunOptions:
         record: recording file to write.
         film: pictures a second of a film in the recording; none where None.
         review: whether checkpoints ask the operator, who must be there to answer.
+        operated: whether an operator leads: no goal is sent but `goal`, and the run shows how it ends.
         faults: file of faults to inject; none where None.
         plans: folder for the log of every footstep plan.
         out: folder for `summary.json`, `trace.jsonl` and `run.json`, from which the run can be replayed.
@@ -52,6 +53,7 @@ class RunOptions:
     record: Path | None = None
     film: float | None = None
     review: bool = False
+    operated: bool = False
     faults: Path | None = None
     plans: Path | None = None
     out: Path | None = None

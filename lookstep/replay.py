@@ -30,7 +30,7 @@ from lookstep.errors import UserError
 from lookstep.faults import break_leaves, faulty_robot
 from lookstep.run_file import TRACE_FILE, RunFile
 from lookstep.trees import tree_path
-from lookstep.world import build_world
+from lookstep.world import build_world, change_world
 from skills.parameters import ParameterError
 
 Progress = Callable[[float, float], None]
@@ -194,6 +194,7 @@ def _drive(
         _apply(tree, tick, fixed)
         robot.expect(tick.happened("commands"))
         tree.tick()
+        change_world(world, tree.context)
         robot.catch_up()
         world.drain_log()
         tree.drain_jobs()

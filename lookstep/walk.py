@@ -6,7 +6,6 @@ world.advance(tick period) -> tree.tick() -> recording, statistics and progress 
 from __future__ import annotations
 
 import dataclasses
-import time as wall
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -24,6 +23,7 @@ from lookstep.faults import break_leaves, faulty_course, faulty_robot, load_faul
 from lookstep.live import LiveParameters
 from lookstep.moment import Moment, Observer
 from lookstep.options import RunOptions
+from lookstep.pace import Pace
 from lookstep.plan_log import PlanRecorder
 from lookstep.run_file import RUN_FILE, TRACE_FILE, RunFile
 from lookstep.statistics import Statistics
@@ -31,7 +31,7 @@ from lookstep.summary import Outcome, Summary, installed_versions
 from lookstep.tree_reload import TreeReload
 from lookstep.trees import tree_path
 from lookstep.warm_up import warm_up
-from lookstep.world import build_world
+from lookstep.world import build_world, change_world
 from sim_envs.courses import Course, CourseError, load_course
 from sim_envs.worlds import SimulatedWorld
 from skills.body_path import Goal
@@ -42,15 +42,19 @@ TICK_RATE = 50.0
 # Why a run has ended that somebody has broken off.
 INTERRUPTED = "stopped by the operator"
 _FILM_MOST = 50.0  # [Hz]
+_AFTERMATH = 2.0  # An operated run goes on so long after its end: the robot finishes its step, or its fall [s].
 
 
-def walk(options: RunOptions, *observers: Observer, inbox: OperatorInbox | None = None) -> Summary:
+def walk(
+    options: RunOptions, *observers: Observer, inbox: OperatorInbox | None = None, pace: Pace | None = None
+) -> Summary:
     """Walk once.
 
     Args:
         options: what to run.
         observers: watch besides recording and statistics.
         inbox: takes events of the operator, from any thread.
+        pace: holds robot time back; by the options' speed where None.
 
     Raises:
         YamlError, UserError: where the input is not usable; nothing has been written then.
@@ -94,8 +98,8 @@ def walk(options: RunOptions, *observers: Observer, inbox: OperatorInbox | None 
         plans = PlanRecorder(options.plans)
         watching.append(plans)
     try:
-        goal = Goal(*(options.goal or course.goal))
-        ending = _loop(world, tree, health, watching, options, goal, configuration.judge.goal_distance, faults)
+        pace = pace or Pace(_speed(options))
+        ending = _loop(world, tree, health, watching, options, pace, configuration.judge.goal_distance, faults)
     finally:
         tree.shutdown()
         if recording is not None:
@@ -138,29 +142,34 @@ def _loop(
     health: ControlHealth,
     watching: list[Observer],
     options: RunOptions,
-    goal: Goal,
+    pace: Pace,
     goal_distance: float,
     faults: Sequence[Fault],
 ) -> _Ending:
-    pace = _Pace(_speed(options))
+    goal = Goal(*(options.goal or world.course.goal))
     watches: list[LiveParameters | TreeReload] = []
     if options.live is not None:
         watches.append(LiveParameters(options.live, tree))
     if options.reload:
         watches.append(TreeReload(tree, lambda reloaded: break_leaves(reloaded, faults)))
-    tree.send(SendGoal(goal))
-    outcome, reason = None, ""
+    if options.goal is not None or not options.operated:
+        tree.send(SendGoal(goal))
+    outcome, reason, ended = None, "", float("inf")
     try:
-        while outcome is None:
+        while outcome is None or (options.operated and world.time < ended + _AFTERMATH):
+            pace.wait_to_go()
             world.advance(tree.next_tick_time - world.time)
             pace.wait_until(world.time)
             for watch in watches:
                 watch.poll()
             tree.tick()
+            change_world(world, tree.context)
             moment = _moment(world, tree, health)
             for observer in watching:
                 observer.observe(moment)
-            outcome, reason = _ending(moment, options.time_limit)
+            if outcome is None:
+                outcome, reason = _ending(moment, options.time_limit)
+                ended = world.time
     except KeyboardInterrupt:
         return _Ending(Outcome.STOPPED, INTERRUPTED, pace.elapsed)
     rest = _distance_to_goal(world, tree, goal)
@@ -205,24 +214,6 @@ def _ending(moment: Moment, time_limit: float) -> tuple[Outcome | None, str]:
     if moment.time >= time_limit:
         return Outcome.TIMEOUT, f"{time_limit:g} s are over; last: {tree.root.reason or 'walking'}"
     return None, ""
-
-
-class _Pace:
-    """Holds robot time back to a multiple of wall time."""
-
-    def __init__(self, speed: float | None) -> None:
-        self._speed = speed
-        self._started = wall.perf_counter()
-
-    @property
-    def elapsed(self) -> float:
-        """Wall time since the start [s]."""
-        return wall.perf_counter() - self._started
-
-    def wait_until(self, time: float) -> None:
-        """Sleep until the wall has caught up with a robot time."""
-        if self._speed is not None:
-            wall.sleep(max(0.0, time / self._speed - self.elapsed))
 
 
 def _speed(options: RunOptions) -> float | None:

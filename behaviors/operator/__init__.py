@@ -15,11 +15,13 @@ from behaviors.operator.events import (
 from behaviors.operator.inbox import OperatorInbox
 from behaviors.operator.parameter_events import ChangeParameter, SwitchImpassability, SwitchReview
 from behaviors.operator.review import ReviewParameters, ReviewRequest
+from behaviors.operator.world_events import MoveBox
 
 __all__ = [
     "EVENTS",
     "Approve",
     "ChangeParameter",
+    "MoveBox",
     "MoveCarrot",
     "OperatorEvent",
     "OperatorEventError",

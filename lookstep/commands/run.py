@@ -50,7 +50,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def execute(options: argparse.Namespace) -> int:
     """Walk; 0 when the goal was reached."""
-    run_options = RunOptions(
+    run_options = options_of(options)
+    if options.json is not None and not options.json.parent.is_dir():
+        raise UserError(f"--json {options.json}: the folder {options.json.parent} does not exist")
+    if options.review and options.executor != EXECUTORS[0]:
+        raise UserError(f"--review: the robot's clock waits for the operator, which needs --executor {EXECUTORS[0]}")
+    # Loading the simulation takes seconds; whoever asks for help need not wait for it.
+    from lookstep.commands.report import Progress, print_summary
+    from lookstep.commands.terminal_review import TerminalReview
+    from lookstep.summary import Outcome
+    from lookstep.walk import walk
+
+    with Progress() as progress:
+        observers = [progress, TerminalReview(input, print, progress.aside)] if options.review else [progress]
+        summary = walk(run_options, *observers)
+    print_summary(summary, run_options)
+    if options.json is not None:
+        summary.write(options.json)
+    return 0 if summary.outcome is Outcome.GOAL_REACHED else 1
+
+
+def options_of(options: argparse.Namespace) -> RunOptions:
+    """What to run, from the command line."""
+    return RunOptions(
         tree=options.tree,
         course=options.course,
         seed=options.seed,
@@ -71,23 +93,6 @@ def execute(options: argparse.Namespace) -> int:
         plans=options.plans,
         out=options.out,
     )
-    if options.json is not None and not options.json.parent.is_dir():
-        raise UserError(f"--json {options.json}: the folder {options.json.parent} does not exist")
-    if options.review and options.executor != EXECUTORS[0]:
-        raise UserError(f"--review: the robot's clock waits for the operator, which needs --executor {EXECUTORS[0]}")
-    # Loading the simulation takes seconds; whoever asks for help need not wait for it.
-    from lookstep.commands.report import Progress, print_summary
-    from lookstep.commands.terminal_review import TerminalReview
-    from lookstep.summary import Outcome
-    from lookstep.walk import walk
-
-    with Progress() as progress:
-        observers = [progress, TerminalReview(input, print, progress.aside)] if options.review else [progress]
-        summary = walk(run_options, *observers)
-    print_summary(summary, run_options)
-    if options.json is not None:
-        summary.write(options.json)
-    return 0 if summary.outcome is Outcome.GOAL_REACHED else 1
 
 
 def _goal(text: str) -> tuple[float, float, float]:

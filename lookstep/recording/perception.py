@@ -7,9 +7,9 @@ from collections import Counter
 import cv2
 import numpy as np
 import rerun as rr
-from numpy.typing import NDArray
 
 from lookstep import palette, shapes
+from lookstep.lidar_points import scan_points
 from lookstep.perception_pictures import colored, height_picture
 from lookstep.recording.columns import Columns
 from lookstep.recording.images import encoded_depth, encoded_drawing, encoded_picture, pinhole_of
@@ -19,7 +19,6 @@ from skills.regions import GroundUpdate, RegionExtraction, debug_image
 
 _PICTURE_WIDTH = 640
 _METRE = 1.0  # noise is told at this depth [m]
-_SCAN_STRIDE = 4  # every nth ring and column of a scan is kept
 _UPDATE_PERIOD = 1.0
 _SHOWN_REASONS = ("seen differently", "seen through")  # the others are everyday
 
@@ -86,7 +85,7 @@ class PerceptionViews:
         cells = rr.Points3D(heights.points_world, colors=colors, radii=0.5 * heights.resolution)
         self._stream.log("world/around/height_map", cells)
         if scan is not None:
-            points = _scan_points(scan)
+            points = scan_points(scan)
             self._stream.log("world/around/scan", rr.Points3D(points, colors=[palette.SCAN], radii=0.008))
 
 
@@ -108,13 +107,3 @@ def rejections(extraction: RegionExtraction) -> str:
         largest = max(alike, key=lambda piece: cv2.contourArea(piece.outline_image.astype(np.float32)))
         lines.append(f"| {cause} | {pieces} | {largest.reason} |")
     return "\n".join(lines)
-
-
-def _scan_points(scan: LidarScan) -> NDArray[np.float32]:
-    """Where the beams of every nth ring and column ended, (N, 3) in the world [m]."""
-    step = slice(None, None, _SCAN_STRIDE)
-    elevation, azimuth = np.meshgrid(scan.lidar.elevations[step], scan.lidar.azimuths[step], indexing="ij")
-    along = np.stack((np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)), -1)
-    ranges = scan.ranges[step, step].astype(np.float64)
-    back = ranges > 0.0
-    return (scan.T_world_lidar @ (along[back] * ranges[back][:, None])).astype(np.float32)
