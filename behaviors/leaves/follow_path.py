@@ -73,9 +73,7 @@ class WatchGoal(Leaf):
 class PlanBodyPathParameters(SkillParameters):
     """How long a path may take, and how often it is planned."""
 
-    latency: float = parameter(
-        0.06, unit="s", meaning="robot time until a path is delivered", minimum=0.0, maximum=60.0
-    )
+    latency: float = parameter(0.1, unit="s", meaning="robot time until a path is delivered", minimum=0.0, maximum=60.0)
     period: float = parameter(
         0.0,
         unit="s",

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from skills.body_path.path_cost import body_fits, density, motion_cost, motion_fits
+from skills.body_path.ground_layers import GROUND
+from skills.body_path.path_cost import body_fits, density, look_up, motion_cost, motion_fits
 from skills.footsteps.open_list import EDGE, pop, push, with_room
 from skills.footsteps.records import Records
 from skills.geometry.pose import Array
@@ -25,6 +26,7 @@ NEIGHBOURS = np.array(
 """Columns and rows to each neighbour, by their heading; the opposite of one is 8 further on."""
 
 JOINED = 1.6  # Start and goal are joined to nodes within so many cells.
+_NEARER = 12.0  # Where the goal cannot be reached a metre nearer to it is worth more than any metre costs.
 
 _HALF, _ALL = 8, 16
 
@@ -51,8 +53,8 @@ def search_lattice(
         way_out: where the body does not fit at the start, it may leave to nodes within this distance [m].
 
     Returns:
-        The points of the way (N, 2); its cost; whether it reaches the goal, or the border on the way to a goal beyond;
-        how many nodes were expanded. Where the goal cannot be reached the way leads as near to it as it can.
+        The points of the way (N, 2); its cost; whether it reaches the goal, or the border on the way to one beyond;
+        how many nodes were expanded. Where the goal cannot be reached the way leads as near to it as is worth it.
     """
     rows, columns = layers.shape[1], layers.shape[2]
     nodes = rows * columns
@@ -70,7 +72,7 @@ def search_lattice(
     size = _leave(layers, cells, scale, start, goal, way_out, costs, parents, open_list)
     if goal_open and _apart(start[0], start[1], goal) < JOINED * scale.spacing:
         size = _reach(layers, cells, scale, start[0], start[1], goal, at_start, 0.0, costs, parents, open_list, size)
-    nearest, best, expanded = at_start, _apart(start[0], start[1], goal), 0
+    nearest, best, expanded = at_start, _NEARER * _apart(start[0], start[1], goal), 0
     while size > 0:
         node, cost = open_list[0].node, open_list[0].cost
         size = pop(open_list, size)
@@ -83,8 +85,8 @@ def search_lattice(
         i, j = node // columns, node % columns
         x, y = scale.x + j * scale.spacing, scale.y + i * scale.spacing
         distance = _apart(x, y, goal)
-        if distance < best:
-            nearest, best = node, distance
+        if cost + _NEARER * distance < best:
+            nearest, best = node, cost + _NEARER * distance
         open_list = with_room(open_list, size, _ALL + 1)
         if goal_open and distance < JOINED * scale.spacing:
             size = _reach(layers, cells, scale, x, y, goal, node, cost, costs, parents, open_list, size)
@@ -137,7 +139,8 @@ def _leave(
     """Join the start to the nodes around it; how many edges there are."""
     rows, columns = layers.shape[1], layers.shape[2]
     size = 0
-    # Where no node around can be reached the robot stands in something, and may leave it.
+    ground, _, _ = look_up(layers, GROUND, (start[0] - scale.x) / scale.spacing, (start[1] - scale.y) / scale.spacing)
+    # Where no node around can be reached the robot stands too near to something. It may leave, but not up or down.
     for radius in (JOINED * scale.spacing, way_out):
         checked = radius != way_out
         reach = int(np.ceil(radius / scale.spacing))
@@ -152,8 +155,10 @@ def _leave(
                     continue
                 if checked:
                     free = motion_fits(layers, cells, scale, start[0], start[1], x, y)
+                elif length > 0.0 and abs(layers[GROUND, i, j] - ground) < scale.ground_clearance:
+                    free = body_fits(layers, cells, scale, x, y, dx / length, dy / length)
                 else:
-                    free = length > 0.0 and body_fits(layers, cells, scale, x, y, dx / length, dy / length)
+                    free = False
                 if free and size < len(open_list):
                     node = i * columns + j
                     cost = motion_cost(layers, scale, start[0], start[1], x, y)

@@ -72,18 +72,25 @@ def plan_body_path(request: PathRequest) -> PathPlan:
     parameters = request.parameters
     ground = GroundLayers.of(request.height_map, parameters)
     problem = PathProblem(ground, request.start, request.goal.xyyaw_world, parameters)
-    walked = None if request.walked is None else _rest(request.walked, problem)
+    rest = None if request.walked is None else _rest(request.walked, problem)
     try:
         way, end, expansions = find_way(problem if request.walked is None else problem.staying_near(request.walked))
     except ServerError as error:
         return PathPlan(None, np.inf, False, 0, f"planner {parameters.planner}: {error}")
     cost = problem.cost(way)
-    if request.walked is not None and walked is not None and end is PathEnd.GOAL:
-        walked_cost = problem.cost(walked)
-        if cost > (1.0 - parameters.better_by) * walked_cost:
-            return PathPlan(request.walked, walked_cost, True, expansions)
+    if request.walked is not None and rest is not None and end is request.walked.end:
+        rest_cost = problem.cost(rest)
+        if _is_as_good(rest, rest_cost, way, cost, problem):
+            return PathPlan(request.walked, rest_cost, True, expansions)
     path = path_along(way, float(request.start[2]), request.goal, end, parameters, request.path_id)
     return PathPlan(path, cost, False, expansions)
+
+
+def _is_as_good(rest: Array, rest_cost: float, way: Array, cost: float, problem: PathProblem) -> bool:
+    """Whether what is left of a path may stay: another ends no nearer to the goal, and is not clearly cheaper."""
+    p, goal = problem.parameters, problem.goal[:2]
+    nearer = np.hypot(*(rest[-1] - goal)) - np.hypot(*(way[-1] - goal))
+    return bool(nearer <= p.same_way and cost > (1.0 - p.better_by) * rest_cost - p.same_way)
 
 
 def find_way(problem: PathProblem) -> tuple[Array, PathEnd, int]:
@@ -142,8 +149,8 @@ def _end(problem: PathProblem, reached: bool) -> PathEnd:
 
 
 def _rest(path: BodyPath, problem: PathProblem) -> Array | None:
-    """What is left of a path to the goal (N, 2); None where it is blocked, left, or ends elsewhere."""
-    if path.end is not PathEnd.GOAL or not problem.goal_is_free:
+    """What is left of a path (N, 2); None where it is blocked or left, or would grow with the map."""
+    if path.end is PathEnd.BORDER or (path.end is PathEnd.GOAL and not problem.goal_is_free):
         return None
     begun = path.project(problem.start)
     here = path.at(begun)[:2]

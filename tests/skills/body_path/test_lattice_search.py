@@ -117,3 +117,11 @@ def test_a_start_in_an_obstacle_is_left():
     points, _, reached, _ = search(problem(post))
     assert reached
     np.testing.assert_allclose(points[0], (0.0, 0.0))
+
+
+def test_a_start_too_near_to_a_block_is_left_but_not_onto_the_block():
+    block = box(level(), (0.3, 1.5), (-1.0, 1.0), 1.0)
+    points, _, reached, _ = search(problem(block, start=(0.0, 0.05, 0.0)))
+    assert reached
+    assert (points[1:, 0] < 0.0).any()
+    assert not ((points[:, 0] > 0.3) & (points[:, 0] < 1.5) & (np.abs(points[:, 1]) < 1.0)).any()
