@@ -105,7 +105,7 @@ def test_old_ground_is_not_planned_on_and_the_operator_reads_why(tree, robot, re
     tick(tree, 90)
     tree.send(goal())
     said = []
-    for _ in range(30):
+    for _ in range(40):
         tick(tree)
         said += [t.reason for t in tree.transitions if t.path.endswith("ground_fresh") and t.after is Status.FAILURE]
     assert said == ["regions are 1.9 s old, limit 1.5 s", "regions are 2.4 s old, limit 1.5 s"]
