@@ -43,7 +43,7 @@ class Case:
         preset: names or files, joined by commas; over the preset of the suite.
         set: assignments as of a run.
         time_limit: robot time after which a walk ends [s].
-        ends: how a walk of this case should end.
+        ends: how a walk of this case may end.
         least_reactive: reactive steps that each walk should have.
         may_fail: most runs that may end otherwise.
     """
@@ -56,7 +56,7 @@ class Case:
     preset: str | None = None
     set: tuple[str, ...] = ()
     time_limit: float = field(default=_RUN.time_limit, metadata={"unit": "s", "minimum": 1.0, "maximum": 3600.0})
-    ends: Outcome = Outcome.GOAL_REACHED
+    ends: tuple[Outcome, ...] = (Outcome.GOAL_REACHED,)
     least_reactive: int = field(default=0, metadata={"minimum": 0, "maximum": 1000})
     may_fail: Failures = Failures()
 

@@ -35,7 +35,7 @@ class RoughParameters(FieldParameters):
         0.0, unit="1", minimum=0.0, maximum=0.30, meaning="share of blocks left out; each row keeps one"
     )
     missing_rows: int = parameter(
-        0, unit="1", minimum=0, maximum=3, meaning="whole rows left out, in the middle half of the way"
+        0, unit="1", minimum=0, maximum=3, meaning="whole rows left out, one behind the other"
     )
     tilted_thickness: float = parameter(
         0.192, unit="m", minimum=0.05, maximum=0.5, meaning="height of a tilted block above its base"
@@ -69,13 +69,14 @@ def rough(seed: int, parameters: RoughParameters) -> Course:
     return field_course("rough", blocks, parameters)
 
 
-def _missing_rows(generator: np.random.Generator, parameters: RoughParameters) -> set[int]:
-    """Rows that are left out as a whole; no step leads over one."""
-    first = parameters.rows // 4
-    middle = np.arange(first, parameters.rows - first)
-    if parameters.missing_rows > len(middle):
-        raise CourseError(f"missing_rows: got {parameters.missing_rows}, {parameters.rows} rows can lack {len(middle)}")
-    return set(generator.permutation(middle)[: parameters.missing_rows].tolist())
+def _missing_rows(generator: np.random.Generator, parameters: RoughParameters) -> range:
+    """Rows that are left out as a whole, somewhere in the middle half of the way."""
+    first, count = parameters.rows // 4, parameters.missing_rows
+    middle = parameters.rows - 2 * first
+    if count > middle:
+        raise CourseError(f"missing_rows: got {count}, {parameters.rows} rows can lack {middle}")
+    begin = first + int(generator.integers(middle - count + 1))
+    return range(begin, begin + count)
 
 
 def _missing_cells(order: Sequence[tuple[int, int]], parameters: RoughParameters) -> set[tuple[int, int]]:

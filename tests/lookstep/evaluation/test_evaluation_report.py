@@ -28,7 +28,7 @@ def group(*walks: dict, **case: Any) -> Group:
 
 
 def test_a_walk_fails_where_it_does_not_end_as_its_case_wants():
-    case, blocked = Case(name="a", course="rough"), Case(name="b", course="rough", ends=Outcome.BLOCKED)
+    case, blocked = Case(name="a", course="rough"), Case(name="b", course="rough", ends=(Outcome.BLOCKED,))
     options = RunOptions()
     assert why_failed(row(options), case) == ""
     assert why_failed(row(options, **FELL), case) == "fell: the DCM is 6 cm outside the support polygon"

@@ -121,14 +121,15 @@ def test_missing_blocks_leave_one_in_every_row(share):
         assert len(set(rows)) == ROWS
 
 
-@pytest.mark.parametrize("count", [1, 3])
-def test_missing_rows_are_in_the_middle_half_and_the_rest_is_the_same_course(count):
+@pytest.mark.parametrize("count", [1, 2])
+def test_missing_rows_lie_together_in_the_middle_half_and_the_rest_is_the_same_course(count):
     gone_somewhere = set()
     for seed in range(10):
         whole, course = load_course("rough", seed), load_course("rough", seed, missing_rows=count)
         left = {box.name: box for box in course.boxes}
         gone = {int(box.name.split("_")[1][1:]) for box in blocks(whole) if box.name not in left}
-        assert len(gone) == count and min(gone) >= ROWS // 4 and max(gone) < ROWS - ROWS // 4
+        assert gone == set(range(min(gone), min(gone) + count))
+        assert min(gone) >= ROWS // 4 and max(gone) < ROWS - ROWS // 4
         assert len(blocks(course)) == (ROWS - count) * COLUMNS
         assert all(box.T_world_box.p.tobytes() == left[box.name].T_world_box.p.tobytes() for box in whole.boxes
                    if box.name in left)  # fmt: skip
