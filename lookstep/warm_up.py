@@ -99,6 +99,7 @@ def _second_process() -> Iterator[None]:
     # Two processes must not write one cache at a time: each names what it writes without asking the other.
     beside = kernel_cache() / "beside"
     try:
+        shutil.rmtree(beside, ignore_errors=True)  # What a run left there that was killed.
         link_known(beside)
         environment = {**os.environ, "NUMBA_CACHE_DIR": str(beside)}
         # Where the other fails, its kernels are compiled here.
