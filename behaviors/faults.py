@@ -5,6 +5,7 @@ faults:
   - {at: sensor:depth, mode: off, start: 3.0, duration: 2.0}
   - {at: /look_and_step/walk/sequence/go/walk_to/on_the_way/follow_path, mode: exception, start: 8.0}
   - {at: world:block_3, mode: wrong, start: 4.0, shift: [0, 0, -0.05]}
+  - {at: operator, mode: off, start: 9.0}
 ```
 
 What cannot be injected is refused when the file is read, never ignored.
@@ -25,10 +26,10 @@ SENSORS = ("depth", "lidar", "state", "status")
 class FaultMode(Enum):
     """How something breaks.
 
-    off: nothing new comes, or the leaf fails. stuck: the old content comes again, or the leaf runs for ever.
-    wrong: another content. slow: a computation takes longer. delayed: it comes later. intermittent: it comes sometimes.
-    nan: a share of it is not a number. exception: reading or ticking raises. script: the leaf says what it is told.
-    fallen: the robot says that it has fallen.
+    off: nothing new comes, the leaf fails, or the operator is silent. stuck: the old content comes again, or the leaf
+    runs for ever. wrong: another content. slow: a computation takes longer. delayed: it comes later. intermittent: it
+    comes sometimes. nan: a share of it is not a number. exception: reading or ticking raises. script: the leaf says
+    what it is told. fallen, disabled: the robot says that it has fallen, or takes no steps.
     """
 
     OFF = "off"
@@ -41,6 +42,7 @@ class FaultMode(Enum):
     EXCEPTION = "exception"
     SCRIPT = "script"
     FALLEN = "fallen"
+    DISABLED = "disabled"
 
 
 class InjectedFaultError(RuntimeError):
@@ -61,7 +63,7 @@ POSSIBLE: dict[str, tuple[FaultMode, ...]] = {
     "sensor:depth": _IMAGES,
     "sensor:lidar": _IMAGES,
     "sensor:state": (FaultMode.STUCK, FaultMode.WRONG, FaultMode.DELAYED, FaultMode.NAN, FaultMode.EXCEPTION),
-    "sensor:status": (FaultMode.STUCK, FaultMode.DELAYED, FaultMode.EXCEPTION, FaultMode.FALLEN),
+    "sensor:status": (FaultMode.STUCK, FaultMode.DELAYED, FaultMode.EXCEPTION, FaultMode.FALLEN, FaultMode.DISABLED),
     "leaf": (
         FaultMode.OFF,
         FaultMode.STUCK,
@@ -72,6 +74,7 @@ POSSIBLE: dict[str, tuple[FaultMode, ...]] = {
         FaultMode.SCRIPT,
     ),
     "world": (FaultMode.OFF, FaultMode.WRONG),
+    "operator": (FaultMode.OFF, FaultMode.WRONG, FaultMode.DELAYED),
 }
 
 
@@ -85,7 +88,7 @@ class Fault:
     """One fault.
 
     Attributes:
-        at: `sensor:NAME`, a leaf's path, or `world:BLOCK`.
+        at: `sensor:NAME`, a leaf's path, `world:BLOCK`, or `operator`.
         mode: how it breaks.
         start: robot time at which it begins [s].
         duration: how long it lasts; for ever where 0 [s].
@@ -170,7 +173,7 @@ def _check(fault: Fault, node: Node, path: str, problems: list[Problem]) -> None
     assert at is not None and mode is not None, "both are required"
     possible = POSSIBLE.get(fault.kind)
     if possible is None:
-        allowed = (*(name for name in POSSIBLE if ":" in name), "world:BLOCK", "/path/of/a/leaf")
+        allowed = (*(name for name in POSSIBLE if ":" in name), "world:BLOCK", "/path/of/a/leaf", "operator")
         hint = nearest(fault.at, POSSIBLE)
         message = f'nothing to break at "{fault.at}"{hint} (allowed: {", ".join(allowed)})'
         problems.append(Problem(at.location, message, f"{path}.at"))

@@ -21,7 +21,8 @@ from skills.walking.walking_state import RobotState, StepEvent, WalkingPhase, Wa
 T = TypeVar("T")
 Frame = TypeVar("Frame", DepthImage, LidarScan)
 
-_FALLEN = "an injected fault says so"
+_SAYS_SO = "an injected fault says so"
+_PHASES = {FaultMode.FALLEN: WalkingPhase.FALLEN, FaultMode.DISABLED: WalkingPhase.DISABLED}
 
 
 class FaultyRobot:
@@ -137,9 +138,8 @@ def _break_state(state: RobotState, fault: Fault) -> RobotState:
 
 
 def _break_status(status: WalkingStatus, fault: Fault) -> WalkingStatus:
-    if fault.mode is FaultMode.FALLEN:
-        return replace(status, phase=WalkingPhase.FALLEN, failure=_FALLEN)
-    return status
+    phase = _PHASES.get(fault.mode)
+    return status if phase is None else replace(status, phase=phase, failure=_SAYS_SO)
 
 
 class _Frames(Generic[Frame]):

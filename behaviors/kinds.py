@@ -14,6 +14,7 @@ from behaviors.decorators import (
     RunWhile,
     Timeout,
 )
+from behaviors.halting import HaltUnless, PauseOnFailure
 from behaviors.registry import Registry
 from behaviors.subsumption import Inhibit, Reset, Suppress
 from strict_yaml import nearest
@@ -33,6 +34,8 @@ DECORATORS: dict[str, type[Decorator]] = {
         Suppress,
         Inhibit,
         Reset,
+        HaltUnless,
+        PauseOnFailure,
     )
 }
 

@@ -190,14 +190,24 @@ class _Walker:
         return self.ends(spec.children[0], before, beside)
 
     def _run_while(self, spec: NodeSpec, before: Keys, beside: Keys) -> Ends:
+        asked, ends = self._guarded(spec, before, beside)
+        return Ends(ends.success, meet([ends.failure, asked.failure]), ends.duration)
+
+    def _halt_unless(self, spec: NodeSpec, before: Keys, beside: Keys) -> Ends:
+        """While the condition does not succeed it is asked again."""
+        return self._guarded(spec, before, beside)[1]
+
+    def _guarded(self, spec: NodeSpec, before: Keys, beside: Keys) -> tuple[Ends, Ends]:
+        """A condition, and a child that is ticked once it has succeeded."""
         condition, child = spec.children
         asked = self.ends(condition, before, beside)
         if asked.success is None:
             self._tell_unreachable([child], condition, "succeeds")
             self.ends(child, self.everything, beside)
-            return Ends(None, asked.failure)
-        ends = self.ends(child, asked.success, beside)
-        return Ends(ends.success, meet([ends.failure, asked.failure]), ends.duration)
+            return asked, Ends(None, None)
+        return asked, self.ends(child, asked.success, beside)
+
+    _pause_on_failure = _rate_limit
 
     def _suppress(self, spec: NodeSpec, before: Keys, beside: Keys) -> Ends:
         """The child does not wait for the condition, nor the condition for the child."""

@@ -27,7 +27,7 @@ from sim_envs.worlds import (
     StateDriftParameters,
     WorldParameters,
 )
-from skills.body_path import BodyPathParameters, SubGoalParameters
+from skills.body_path import BodyPathParameters, ImpassabilityParameters, SubGoalParameters
 from skills.footsteps import FootstepParameters, TerrainParameters
 from skills.height_map import HeightMapParameters
 from skills.regions import MemoryParameters, RegionParameters, RegistrationParameters
@@ -87,6 +87,7 @@ class Configuration:
     sub_goal: SubGoalParameters
     footsteps: FootstepParameters
     terrain: TerrainParameters
+    impassability: ImpassabilityParameters
     review: ReviewParameters
     operator_link: OperatorLinkParameters
 

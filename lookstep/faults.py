@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from behaviors import Robot, Tree
+from behaviors import OperatorInbox, Robot, Tree
 from behaviors.faults import Fault, FaultMode, read_faults
+from behaviors.faulty_inbox import FaultyInbox
 from behaviors.faulty_leaf import break_leaf
 from behaviors.faulty_robot import FaultyRobot
 from lookstep.errors import UserError
@@ -64,6 +65,12 @@ def faulty_robot(robot: Robot, faults: Sequence[Fault]) -> Robot:
     """The robot itself where none of its sensors breaks."""
     sensors = [fault for fault in faults if fault.kind.startswith("sensor:")]
     return FaultyRobot(robot, sensors) if sensors else robot
+
+
+def faulty_inbox(inbox: OperatorInbox, faults: Sequence[Fault]) -> OperatorInbox:
+    """The inbox itself where the operator does not break."""
+    found = [fault for fault in faults if fault.kind == "operator"]
+    return FaultyInbox(inbox, found) if found else inbox
 
 
 def break_leaves(tree: Tree, faults: Sequence[Fault]) -> None:

@@ -5,7 +5,7 @@ carrot: [1.5, 0.2, 0.0]
 approve: [footsteps, 12]
 pause: 1
 footsteps.reach: 0.4
-/look_and_step/walk/sequence/go/walk_to/on_the_way/follow_path/selector/go_on/take_a_step/wait_for_swing.fraction: 0.4
+/look_and_step/look/regions/rate_limit.period: 0.2
 ```
 
 A key without a dot is an event of the operator (docs/operator.md), sent whenever its value changes; one that has no

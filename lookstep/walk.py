@@ -19,7 +19,7 @@ from behaviors.operator import ReviewParameters, SendGoal
 from lookstep.configuration import FIXED_SUBJECTS, Assignments, Configuration, load_configuration, split_assignments
 from lookstep.control_health import ControlHealth
 from lookstep.errors import UserError
-from lookstep.faults import break_leaves, faulty_course, faulty_robot, load_faults
+from lookstep.faults import break_leaves, faulty_course, faulty_inbox, faulty_robot, load_faults
 from lookstep.live import LiveParameters
 from lookstep.moment import Moment, Observer
 from lookstep.options import RunOptions
@@ -62,8 +62,9 @@ def walk(
     assignments, configuration, spec, course = _inputs(options)
     faults = () if options.faults is None else load_faults(options.faults, course)
     course = faulty_course(course, faults)
+    inbox = inbox or OperatorInbox()
     world = build_world(course, configuration, options.world, options.seed)
-    tree = _tree(spec, faulty_robot(world, faults), configuration, assignments, options, inbox)
+    tree = _tree(spec, faulty_robot(world, faults), configuration, assignments, options, faulty_inbox(inbox, faults))
     break_leaves(tree, faults)
     # From here on the input is known to be good.
     for folder in filter(None, (options.out, options.plans, options.record and options.record.parent)):
@@ -256,7 +257,7 @@ def _tree(
     configuration: Configuration,
     assignments: Assignments,
     options: RunOptions,
-    inbox: OperatorInbox | None,
+    inbox: OperatorInbox,
 ) -> Tree:
     executor = Executor(ExecutorMode(options.executor))
     try:

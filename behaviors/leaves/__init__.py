@@ -2,12 +2,21 @@
 
 from behaviors.leaves.follow_path import FindSubGoal, GoalReached, PlanBodyPath, WaitForGoal, WatchGoal
 from behaviors.leaves.goals import GiveGoal, WatchCarrot
-from behaviors.leaves.guards import GroundFresh, NoWayOn, RobotFallen
+from behaviors.leaves.guards import (
+    GroundFresh,
+    NotPaused,
+    NoWayOn,
+    PathClear,
+    ResetAsked,
+    RobotDataFresh,
+    RobotDisabled,
+    RobotFallen,
+)
 from behaviors.leaves.height_map import UpdateHeightMap
 from behaviors.leaves.look import ExtractRegions, RememberGround
 from behaviors.leaves.plan_steps import PlanFootsteps
 from behaviors.leaves.review import ReviewBodyPath, ReviewFootsteps
-from behaviors.leaves.walk import PauseWalking, SendFootsteps, WaitForSwing, WaitUntilStanding
+from behaviors.leaves.walk import PauseWalking, SendFootsteps, WaitForQueue, WaitForSwing, WaitUntilStanding
 
 __all__ = [
     "ExtractRegions",
@@ -16,16 +25,22 @@ __all__ = [
     "GoalReached",
     "GroundFresh",
     "NoWayOn",
+    "NotPaused",
+    "PathClear",
     "PauseWalking",
     "PlanBodyPath",
     "PlanFootsteps",
     "RememberGround",
+    "ResetAsked",
     "ReviewBodyPath",
     "ReviewFootsteps",
+    "RobotDataFresh",
+    "RobotDisabled",
     "RobotFallen",
     "SendFootsteps",
     "UpdateHeightMap",
     "WaitForGoal",
+    "WaitForQueue",
     "WaitForSwing",
     "WaitUntilStanding",
     "WatchCarrot",

@@ -6,6 +6,7 @@ import numpy as np
 from py_trees.common import Status
 
 from behaviors.decorators import TIME_TOLERANCE
+from behaviors.halt import HaltCause
 from behaviors.leaf import Call, Leaf, SkillLeaf, SkillParameters
 from behaviors.leaves.vain_attempts import VainAttempts
 from behaviors.operator import SendGoal
@@ -24,12 +25,11 @@ from skills.body_path import (
 )
 from skills.height_map import HeightMap
 from skills.parameters import parameter, parameters
-from skills.walking import WalkingPhase
 
 
 @leaf
 class WaitForGoal(Leaf):
-    """Waits until the operator sends a goal that is newer than the last one; a fallen robot takes none."""
+    """Waits until the operator sends a goal that is newer than the last one; a robot that cannot walk takes none."""
 
     ends_with = (Status.SUCCESS,)
     goal = Output(Goal, "where the robot is sent")
@@ -44,9 +44,9 @@ class WaitForGoal(Leaf):
         if not goals:
             return self.running("waits for a goal")
         status = self.context.robot.status()
-        if status.phase is WalkingPhase.FALLEN:
+        if status.unable:
             # Else it would walk off by itself once it stands again.
-            self.log(f"goal refused: the robot has fallen: {status.failure}", level="warning")
+            self.log(f"goal refused: {status.unable}", level="warning")
             return self.running("waits for a goal that comes when the robot is on its feet")
         self.goal = goals[-1]
         self.log(f"new goal: x {goals[-1].x:.2f} m, y {goals[-1].y:.2f} m, yaw {goals[-1].yaw:.2f} rad")
@@ -146,7 +146,9 @@ class FindSubGoal(Leaf):
             reason = f"the path ends here, {path.end.value}"
             x, y, _ = path.waypoints_world[-1].tolist()
             self.vain = VainAttempts.after(self.vain, (x, y), reason)
-            return self.failed(reason)
+            if path.end is PathEnd.BORDER:
+                return self.failed(reason)
+            return self.halted(HaltCause.BLOCKED, reason, Status.FAILURE)
         self.sub_goal = sub_goal(path, stance, parameters)
         return self.succeeded()
 

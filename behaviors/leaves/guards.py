@@ -1,4 +1,4 @@
-"""Guards: is it safe and sensible to go on, and if not, why."""
+"""Guards: is it safe and sensible to go on, and if not, why. None of them does anything."""
 
 from __future__ import annotations
 
@@ -7,8 +7,11 @@ from py_trees.common import Status
 from behaviors.halt import HaltCause
 from behaviors.leaf import Leaf
 from behaviors.leaves.vain_attempts import VainAttempts
-from behaviors.ports import Input, OptionalInput
+from behaviors.operator import ResetBehavior
+from behaviors.ports import Input, OptionalInput, Output
 from behaviors.registry import leaf
+from skills.body_path import BodyPath, Obstacle, find_obstacle
+from skills.height_map import HeightMap
 from skills.parameters import parameter, parameters
 from skills.regions import PlanarRegions
 from skills.walking import WalkingPhase
@@ -22,32 +25,147 @@ class RobotFallen(Leaf):
         """SUCCESS where the robot has fallen."""
         status = self.context.robot.status()
         if status.phase is WalkingPhase.FALLEN:
-            return self.succeeded(f"the robot has fallen: {status.failure}")
+            return self.succeeded(status.unable)
         return self.failed("the robot is on its feet")
+
+
+@leaf
+class RobotDisabled(Leaf):
+    """Succeeds while the robot is not under control of walking."""
+
+    def tick(self) -> Status:
+        """SUCCESS where the robot is disabled."""
+        status = self.context.robot.status()
+        if status.phase is WalkingPhase.DISABLED:
+            return self.succeeded(status.unable)
+        return self.failed("the robot is under control")
+
+
+@leaf
+class ResetAsked(Leaf):
+    """Succeeds in the tick in which the operator asks for a reset."""
+
+    def tick(self) -> Status:
+        """SUCCESS where a reset is asked for."""
+        if any(isinstance(event, ResetBehavior) for event in self.context.operator_events):
+            return self.succeeded("the operator asks for a reset")
+        return self.failed("no reset is asked for")
+
+
+@leaf
+class NotPaused(Leaf):
+    """Succeeds unless the operator has paused the walk."""
+
+    def tick(self) -> Status:
+        """FAILURE between a pause and the end of it."""
+        if self.context.paused:
+            return self.halted(HaltCause.OPERATOR, "paused by the operator", Status.FAILURE)
+        return self.succeeded()
+
+
+@parameters
+class RobotDataParameters:
+    """How old what the robot says of itself may be."""
+
+    max_age: float = parameter(0.5, unit="s", meaning="older estimates are not walked on", minimum=0.02, maximum=60.0)
+
+
+@leaf
+class RobotDataFresh(Leaf):
+    """Succeeds while the estimate of the robot's state is recent."""
+
+    Parameters = RobotDataParameters
+    parameters: RobotDataParameters
+
+    def tick(self) -> Status:
+        """SUCCESS while the estimate is fresh."""
+        age, limit = self.context.time - self.context.robot.state().time, self.parameters.max_age
+        if age > limit:
+            reason = f"robot data is {age:.1f} s old, limit {limit:.1f} s"
+            return self.halted(HaltCause.OLD_DATA, reason, Status.FAILURE)
+        return self.succeeded()
 
 
 @parameters
 class FreshnessParameters:
     """How old the ground may be."""
 
-    max_age: float = parameter(1.5, unit="s", meaning="older ground is not planned on", minimum=0.05, maximum=60.0)
+    max_age: float = parameter(
+        1.5, unit="s", meaning="older ground is not planned or walked on", minimum=0.05, maximum=60.0
+    )
 
 
 @leaf
 class GroundFresh(Leaf):
-    """Succeeds while the newest look at the ground is recent."""
+    """Succeeds while the ground was seen recently; frames without depth make nothing fresh."""
 
     Parameters = FreshnessParameters
+    parameters: FreshnessParameters
     ground = Input(PlanarRegions, "planar regions around the robot")
 
     def tick(self) -> Status:
         """SUCCESS while the ground is fresh and there is any."""
-        age = self.context.time - self.ground.time
-        limit = self.parameters.max_age
-        if age > limit:
-            return self.failed(f"regions are {age:.1f} s old, limit {limit:.1f} s")
         if not self.ground.regions:
-            return self.failed("no regions in sight")
+            return self.halted(HaltCause.OLD_DATA, "no regions in sight", Status.FAILURE)
+        age, limit = self.context.time - self.ground.time, self.parameters.max_age
+        if age > limit:
+            reason = f"regions are {age:.1f} s old, limit {limit:.1f} s"
+            return self.halted(HaltCause.OLD_DATA, reason, Status.FAILURE)
+        return self.succeeded()
+
+
+@parameters
+class PathClearParameters:
+    """How old the height map may be."""
+
+    max_age: float = parameter(
+        1.5, unit="s", meaning="by an older height map nobody sees what is in the way", minimum=0.05, maximum=60.0
+    )
+
+
+@leaf
+class PathClear(Leaf):
+    """Succeeds while nothing stands in the way of the body within the horizon (`impassability`).
+
+    It says for how long it is worth while to wait for a thing to go, before a way around is planned.
+    """
+
+    Parameters = PathClearParameters
+    parameters: PathClearParameters
+    path = Input(BodyPath, "way of the body to the goal")
+    height_map = OptionalInput(HeightMap, "heights of the ground, cell by cell; without it the way counts as clear")
+    obstacle = Output(Obstacle, "what stands in the way; nothing where it is clear")
+    waits = Output(bool, "whether something stands in the way that may still go by itself")
+
+    def setup(self) -> None:
+        """Nothing has been looked at, and nothing was in the way."""
+        self._seen: tuple[object, ...] = ()
+        self._since: float | None = None
+
+    def tick(self) -> Status:
+        """FAILURE where something stands in the way, or the map is too old to tell."""
+        rules, height_map = self.context.parameters["impassability"], self.height_map
+        if height_map is None or not rules.halts:
+            self._seen, self.obstacle = (), None
+            return self._clear()
+        age, limit = self.context.time - height_map.time, self.parameters.max_age
+        if age > limit:
+            reason = f"the height map is {age:.1f} s old, limit {limit:.1f} s"
+            return self.halted(HaltCause.OLD_DATA, reason, Status.FAILURE)
+        if (height_map, self.path, rules) != self._seen:
+            self._seen = (height_map, self.path, rules)
+            stance = self.context.robot.status().imminent_stance
+            self.obstacle = find_obstacle(self.path, stance, height_map, rules)
+        found = self.obstacle
+        if found is None:
+            return self._clear()
+        self._since = self.context.time if self._since is None else self._since
+        self.waits = self.context.time - self._since < rules.patience
+        reason = f"path blocked: something {found.height:.1f} m high stands {found.distance:.1f} m ahead"
+        return self.halted(HaltCause.BLOCKED, reason, Status.FAILURE)
+
+    def _clear(self) -> Status:
+        self._since, self.waits = None, False
         return self.succeeded()
 
 

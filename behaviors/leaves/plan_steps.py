@@ -25,6 +25,13 @@ class PlanFootstepsParameters(SkillParameters):
     search_time: float = parameter(
         0.1, unit="s", meaning="time after which a search in realtime ends with the best so far", minimum=0.001
     )
+    longer: float = parameter(
+        0.5,
+        unit="1",
+        meaning="share by which an attempt in vain lengthens the next, of a standing robot",
+        minimum=0.0,
+    )
+    longest: float = parameter(3.0, unit="1", meaning="how many times longer at most", minimum=1.0, maximum=100.0)
 
 
 @leaf
@@ -32,19 +39,22 @@ class PlanFootsteps(SkillLeaf):
     """Plans at least three steps by A* over the regions; partial plans count, no step at all is a failure."""
 
     Parameters = PlanFootstepsParameters
+    parameters: PlanFootstepsParameters
     ground = Input(PlanarRegions, "planar regions around the robot")
     sub_goal = Input(SubGoal, "where the next steps should lead")
     plan = Output(FootstepPlan, "the next footsteps")
     vain = Output(VainAttempts, "attempts in a row that found no step; nothing after a plan")
 
-    def setup(self) -> None:
-        """No goal yet."""
-        self._goal = (0.0, 0.0)
-
     def request(self) -> Call | Status:
-        """From the imminent stance with the other foot first; with either foot when the robot stands."""
-        status = self.context.robot.status()
+        """From the imminent stance with the other foot first; with either foot when the robot stands.
+
+        A standing robot has time: after each attempt in vain it searches longer.
+        """
+        status, parameters = self.context.robot.status(), self.parameters
         standing = status.phase is WalkingPhase.STANDING or status.last_side is None
+        tried = self.vain.count if self.vain is not None and standing else 0
+        longer = min(1.0 + parameters.longer * tried, parameters.longest)
+        footsteps = self.context.parameters["footsteps"]
         request = PlanRequest(
             ground=self.ground,
             sub_goal=self.sub_goal,
@@ -53,14 +63,15 @@ class PlanFootsteps(SkillLeaf):
             plan_id=self.context.new_id("plan"),
             first_sequence_id=status.last_sequence_id + 1,
             reference=None if standing else self._not_begun(status),
-            footsteps=self.context.parameters["footsteps"],
+            footsteps=dataclasses.replace(footsteps, max_expansions=round(longer * footsteps.max_expansions)),
             terrain=self.context.parameters["terrain"],
         )
-        x, y = self.sub_goal.path.waypoints_world[-1, :2]
-        self._goal = (float(x), float(y))
-        alarm = self.context.executor.alarm(self.parameters.search_time)
+        x, y, _ = self.sub_goal.path.waypoints_world[-1].tolist()
+        self._goal = (x, y)
+        alarm = self.context.executor.alarm(longer * parameters.search_time)
         timed = () if alarm is None else (alarm,)
-        return self.call(plan_on_request, request, *timed, deadline=self._deadline(status))
+        budget = longer * parameters.latency
+        return self.call(plan_on_request, request, *timed, budget=budget, deadline=self._deadline(status))
 
     def receive(self, result: FootstepPlan) -> Status:
         """Hand an executable plan on."""

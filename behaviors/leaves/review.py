@@ -66,7 +66,7 @@ class ReviewBodyPath(Review):
 
     checkpoint = "body_path"
     thing = "body path"
-    path = Input(BodyPath, "the way to be approved")
+    path = Input(BodyPath, "the way to be approved", when_missing=Status.FAILURE)
 
     def item(self) -> tuple[Any, int]:
         """The path."""
@@ -79,7 +79,7 @@ class ReviewFootsteps(Review):
 
     checkpoint = "footsteps"
     thing = "plan"
-    plan = Input(FootstepPlan, "the footsteps to be approved")
+    plan = Input(FootstepPlan, "the footsteps to be approved", when_missing=Status.FAILURE)
 
     def item(self) -> tuple[Any, int]:
         """The plan."""

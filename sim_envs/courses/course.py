@@ -34,7 +34,7 @@ class Box:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class BoxEvent:
-    """A box that moves to another pose once, at a time or when the robot comes near; exactly one of the two is set.
+    """A box that moves to another pose once; exactly one of `time`, `distance` and `after` says when.
 
     Attributes:
         box: name of the box.
@@ -42,6 +42,7 @@ class BoxEvent:
         duration: of the motion [s].
         time: robot time at which it begins [s].
         distance: horizontal distance between robot and box centre at which it begins [m].
+        after: time from the beginning of the event before it of the same box [s].
     """
 
     box: str
@@ -49,10 +50,11 @@ class BoxEvent:
     duration: float
     time: float | None = None
     distance: float | None = None
+    after: float | None = None
 
     def __post_init__(self) -> None:
-        if (self.time is None) == (self.distance is None):
-            raise CourseError(f"event of box {self.box!r}: needs either a time or a distance")
+        if sum(when is not None for when in (self.time, self.distance, self.after)) != 1:
+            raise CourseError(f"event of box {self.box!r}: needs one of time, distance and after")
 
 
 @dataclass(frozen=True, slots=True, eq=False)

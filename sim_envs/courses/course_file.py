@@ -60,6 +60,7 @@ class _Event:
     box: str
     distance: float | None = field(default=None, metadata=_POSITIVE_METRES)
     time: float | None = field(default=None, metadata=_SECONDS)
+    after: float | None = field(default=None, metadata=_SECONDS)
     duration: float = field(default=0.5, metadata=_SECONDS)
     move_by: _Vector = field(default=(0.0, 0.0, 0.0), metadata=_METRES)
     turn_by_deg: _Vector = field(default=(0.0, 0.0, 0.0), metadata=_DEGREES)
@@ -94,7 +95,8 @@ def read_course(root: Node, name: str, seed: int = 0) -> Course:
     if problems:
         raise YamlError(problems)
     poses = {box.name: box.T_world_box for box in boxes.values()}
-    events = [_read_event(node, f"events[{i}]", poses, problems) for i, node in enumerate(file.events)]
+    moved: set[str] = set()
+    events = [_read_event(node, f"events[{i}]", poses, moved, problems) for i, node in enumerate(file.events)]
     _check_ground(tuple(boxes.values()), {"start": start, "goal": goal}, root, problems)
     if problems:
         raise YamlError(problems)
@@ -171,24 +173,30 @@ def _offsets(repeats: tuple[_Repeat, ...]) -> list[Array]:
     return offsets
 
 
-def _read_event(node: Node, path: str, poses: dict[str, Pose], problems: list[Problem]) -> BoxEvent | None:
-    """One entry of `events`; `poses` holds where the events before it leave each box."""
+def _read_event(
+    node: Node, path: str, poses: dict[str, Pose], moved: set[str], problems: list[Problem]
+) -> BoxEvent | None:
+    """One entry of `events`; `poses` holds where the events before it leave each box, `moved` which they move."""
     event = read_dataclass(node, _Event, problems, path)
     if event is None:
         return None
-    if (event.distance is None) == (event.time is None):
-        problems.append(Problem(node.location, 'needs either "distance" or "time"', path))
+    if sum(when is not None for when in (event.distance, event.time, event.after)) != 1:
+        problems.append(Problem(node.location, 'needs one of "distance", "time" and "after"', path))
         return None
     if event.box not in poses:
         place = node.get("box")
         message = f'no box "{event.box}"{nearest(event.box, poses)}'
         problems.append(Problem(place.location if place else node.location, message, f"{path}.box"))
         return None
+    if event.after is not None and event.box not in moved:
+        problems.append(Problem(node.location, f'no event before it moves "{event.box}", after which it could', path))
+    moved.add(event.box)
     before = poses[event.box]
     roll, pitch, yaw = np.radians(event.turn_by_deg)
     turned = rotation_z(yaw) @ rotation_y(pitch) @ rotation_x(roll) @ before.R
     poses[event.box] = Pose(turned, before.p + np.array(event.move_by))
-    return BoxEvent(event.box, poses[event.box], event.duration, time=event.time, distance=event.distance)
+    when = {"time": event.time, "distance": event.distance, "after": event.after}
+    return BoxEvent(event.box, poses[event.box], event.duration, **when)
 
 
 def _place(

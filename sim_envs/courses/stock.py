@@ -8,5 +8,6 @@ STOCK: dict[str, tuple[float, float, float]] = {
     "large_block": (0.393, 0.190, 0.192),
     "cinder_block": (0.390, 0.190, 0.190),
     "pallet": (1.210, 1.013, 0.155),
+    "person": (0.300, 0.500, 1.750),
 }
 """Full lengths along x, y and z by type [m]."""

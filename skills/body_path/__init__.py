@@ -2,6 +2,7 @@
 
 from skills.body_path.body_path import BodyPath, PathEnd
 from skills.body_path.goal import Goal
+from skills.body_path.impassability import ImpassabilityParameters, Obstacle, find_obstacle
 from skills.body_path.path_parameters import BodyPathParameters
 from skills.body_path.path_planner import PathPlan, PathRequest, plan_body_path
 from skills.body_path.straight_path import straight_path
@@ -11,11 +12,14 @@ __all__ = [
     "BodyPath",
     "BodyPathParameters",
     "Goal",
+    "ImpassabilityParameters",
+    "Obstacle",
     "PathEnd",
     "PathPlan",
     "PathRequest",
     "SubGoal",
     "SubGoalParameters",
+    "find_obstacle",
     "goal_reached",
     "plan_body_path",
     "straight_path",

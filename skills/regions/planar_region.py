@@ -70,7 +70,7 @@ class PlanarRegions:
 
     Attributes:
         regions: the regions; where two of a map overlap, the later one in the tuple is the newer.
-        time: robot time of the newest data [s].
+        time: robot time of the newest data that had depth [s].
         frame_id: the newest depth image in it.
     """
 

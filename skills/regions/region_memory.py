@@ -29,6 +29,8 @@ from skills.regions.region_cells import Cells, Window, cells_of, hold
 from skills.regions.registration import Corrections, Drift, camera_to_correct, register
 from skills.regions.registration_parameters import RegistrationParameters
 
+_SPARSE = 8  # Whether a frame has depth at all is seen on one pixel of so many each way.
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Forgotten:
@@ -241,7 +243,10 @@ class _Frame:
         known = (*(remembered.region for remembered in kept), *self._regions.regions)
         unseen = self._unseen(Cells.joined([*(remembered.cells for remembered in kept), newest]))
         supports = tuple(self._support(side, now) for side in unseen)
-        ground = PlanarRegions((*supports, *known), now, self._regions.frame_id)
+        # A frame without depth makes nothing known newer.
+        is_blind = not self._regions.regions and not (self._image.depth[::_SPARSE, ::_SPARSE] > 0.0).any()
+        shown = self._memory.ground if is_blind and self._memory.ground is not None else self._regions
+        ground = PlanarRegions((*supports, *known), shown.time, shown.frame_id)
         change = GroundUpdate(forgotten, drift, self._image.T_world_odometry)
         memory = replace(self._memory, ground=ground, update=change, kept=kept, start=self._start)
         name, passing = self._image.camera_name, not self._is_key

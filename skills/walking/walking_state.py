@@ -52,6 +52,7 @@ class WalkingPhase(Enum):
     TRANSFER = "transfer"
     SWING = "swing"
     FALLEN = "fallen"
+    DISABLED = "disabled"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,14 +60,14 @@ class WalkingStatus:
     """What the walking controller is doing.
 
     Attributes:
-        phase: standing, shifting weight, swinging, or fallen.
+        phase: standing, shifting weight, swinging, fallen, or disabled: not under control of walking.
         phase_elapsed, phase_duration: time in the phase, and its nominal duration, 0 when standing [s].
         current_step: the step whose transfer or swing is under way.
         queue: the steps after it.
         imminent_stance: the stance once the current step has landed, as commanded; the stance now when standing.
         last_side: side of the step under way or last made; None before the first.
         paused: whether the queue is held.
-        failure: why the robot fell; empty while it walks.
+        failure: why the robot fell or is disabled; empty while it walks.
         last_sequence_id: of the step under way or last made; -1 before the first.
     """
 
@@ -80,6 +81,17 @@ class WalkingStatus:
     paused: bool
     failure: str = ""
     last_sequence_id: int = -1
+
+    @property
+    def unable(self) -> str:
+        """Why the robot takes no steps, in one sentence; empty where it does."""
+        match self.phase:
+            case WalkingPhase.FALLEN:
+                return f"the robot has fallen: {self.failure}"
+            case WalkingPhase.DISABLED:
+                return f"the robot is disabled: {self.failure}"
+            case _:
+                return ""
 
     def moved(self, T: Pose) -> WalkingStatus:
         """The same status seen from another frame."""

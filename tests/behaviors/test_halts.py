@@ -25,6 +25,8 @@ DECORATORS = {
     "run_while": "condition: {Scripted: {says: SSF}}, ",
     "suppress": "condition: {Scripted: {says: FSF}}, ",
     "inhibit": "condition: {Scripted: {says: FSF}}, ",
+    "halt_unless": "condition: {Scripted: {says: SSF}}, ",
+    "pause_on_failure": "",
     "reset": "condition: {Scripted: {says: FSF}}, ",
 }
 

@@ -10,8 +10,10 @@ from scripted import ScriptedRobot, leaf_of, make, run
 
 from behaviors import Outcome
 from behaviors.faults import POSSIBLE, Fault, FaultMode, InjectedFaultError, read_faults
+from behaviors.faulty_inbox import FaultyInbox
 from behaviors.faulty_leaf import break_leaf
 from behaviors.faulty_robot import FaultyRobot
+from behaviors.operator import Approve, OperatorInbox
 from skills.geometry import DepthImage, LidarScan, PinholeCamera, Pose, SpinningLidar
 from skills.walking.walking_state import WalkingPhase
 from strict_yaml import YamlError, parse_document
@@ -151,6 +153,26 @@ def broken(mode: FaultMode, path: str = "/t/square", ticks: int = 12, **options:
     return tree, robot
 
 
+def test_an_operator_is_silent_late_or_rejects_what_he_should_approve():
+    def heard(mode: FaultMode) -> list[list[str]]:
+        inbox = FaultyInbox(OperatorInbox(), [Fault("operator", mode, start=0.1, duration=0.2, by=0.3)])
+        found = []
+        for index in range(6):
+            inbox.put(Approve("footsteps", index))
+            found.append([f"{event.name} {event.value[1]}" for event in inbox.drain(index / 10.0)])
+        return found
+
+    assert heard(FaultMode.OFF) == [["approve 0"], [], [], ["approve 3"], ["approve 4"], ["approve 5"]]
+    assert heard(FaultMode.WRONG)[:4] == [["approve 0"], ["reject 1"], ["reject 2"], ["approve 3"]]
+    assert heard(FaultMode.DELAYED)[1:] == [
+        [],
+        [],
+        ["approve 3"],
+        ["approve 1", "approve 4"],
+        ["approve 2", "approve 5"],
+    ]
+
+
 def test_a_leaf_is_off_stuck_or_raises():
     tree, _ = broken(FaultMode.OFF)
     assert (tree.outcome, tree.reason) == (Outcome.FAILURE, "injected fault")
@@ -207,7 +229,7 @@ def test_a_fault_that_cannot_be_there_is_refused():
 BROKEN_FILES = {
     "faults: [{at: sensor:depht, mode: off}]": (
         'f.yaml:1:15: faults[0].at: nothing to break at "sensor:depht"; did you mean "sensor:depth"? (allowed: '
-        "sensor:depth, sensor:lidar, sensor:state, sensor:status, world:BLOCK, /path/of/a/leaf)",
+        "sensor:depth, sensor:lidar, sensor:state, sensor:status, world:BLOCK, /path/of/a/leaf, operator)",
     ),
     "faults: [{at: sensor:state, mode: off}]": (
         'f.yaml:1:35: faults[0].mode: "off" cannot be injected at sensor:state '
@@ -222,7 +244,7 @@ BROKEN_FILES = {
     ),
     "faults: [{at: /t, mode: offf, start: -1, shre: 2}]": (
         'f.yaml:1:25: faults[0].mode: got "offf"; did you mean "off"? (allowed: off, stuck, wrong, slow, delayed, '
-        "intermittent, nan, exception, script, fallen)",
+        "intermittent, nan, exception, script, fallen, disabled)",
         "f.yaml:1:38: faults[0].start: got -1, allowed: 0 .. 86400 s",
         'f.yaml:1:42: faults[0]: unknown key "shre"; did you mean "share"? (allowed: at, mode, start, duration, by, '
         "share, scale, shift, says, seed)",

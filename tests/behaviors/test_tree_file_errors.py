@@ -16,7 +16,7 @@ LEAVES = "(leaves: AddOne, GiveNumber, GiveText, PauseWalking, Scripted, Square)
 NODES = (
     "(nodes: subtree, check, sequence, reactive_sequence, selector, reactive_selector, parallel, reactive_parallel, "
     "inverter, force_success, force_failure, retry, repeat, loop_forever, timeout, rate_limit, run_while, suppress, "
-    "inhibit, reset)"
+    "inhibit, reset, halt_unless, pause_on_failure)"
 )
 FILE_KEYS = "(keys of a tree file: tree, about, include, ports, root, safe_stop, trees)"
 

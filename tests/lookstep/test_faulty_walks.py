@@ -17,8 +17,8 @@ from lookstep.summary import Outcome, Summary
 from strict_yaml import YamlError, parse_document
 
 SMALL_CAMERA = ("camera.resolution=0.3125",)
-STEPS = "/look_and_step/walk/sequence/go/walk_to/on_the_way/follow_path/selector/go_on/take_a_step"
-PLAN = f"{STEPS}/plan_steps/sequence/plan_footsteps"
+STEPS = "/look_and_step/walk/sequence/go/walk_to/on_the_way/follow_path/selector/go_on/halt_unless/take_a_step"
+PLAN = f"{STEPS}/plan_steps/pause_on_failure/sequence/plan_footsteps"
 
 
 def walk(text: str, folder: Path, seconds: float, course: str = "flat", **options) -> Summary:
@@ -45,11 +45,36 @@ def reasons(folder: Path) -> dict[str, list[tuple[float, str]]]:
     return said
 
 
-def test_a_robot_that_sees_nothing_halts_with_the_reason_and_goes_on_when_it_sees_again(tmp_path: Path):
-    summary = walk("faults: [{at: sensor:depth, mode: off, start: 0.5, duration: 5.0}]", tmp_path, 6.6)
+BLIND = {"no image comes": "mode: off", "every pixel is NaN": "mode: nan, share: 1.0"}
+
+
+@pytest.mark.parametrize("mode", BLIND.values(), ids=BLIND)
+def test_a_robot_that_sees_nothing_halts_with_the_reason_and_goes_on_when_it_sees_again(tmp_path: Path, mode: str):
+    summary = walk(f"faults: [{{at: sensor:depth, {mode}, start: 0.5, duration: 2.4}}]", tmp_path, 5.6)
     said = reasons(tmp_path)["ground_fresh"]
     assert next(reason for _, reason in said if "limit 1.5 s" in reason).startswith("regions are ")
-    assert summary.pauses.count == 1 and summary.steps.total >= 4
+    assert summary.pauses.count == 1 and summary.steps.total >= 3
+
+
+def test_robot_data_that_comes_late_halts_the_walk_until_it_is_in_time(tmp_path: Path):
+    summary = walk("faults: [{at: sensor:state, mode: delayed, by: 0.8, start: 1.5, duration: 2.5}]", tmp_path, 6.0)
+    halts = [(time, reason) for time, reason in reasons(tmp_path)["halt_unless"] if reason.startswith("halted: robot")]
+    assert halts[0][1] == "halted: robot data is 0.8 s old, limit 0.5 s"
+    assert halts[0][0] >= 1.5 and halts[-1][0] < 4.1
+    assert summary.pauses.count == 1 and summary.steps.total >= 2
+
+
+@pytest.mark.parametrize("mode", ["fallen", "disabled"])
+def test_a_fall_in_mid_swing_ends_the_walk_for_good(tmp_path: Path, mode: str):
+    summary = walk(f"faults: [{{at: sensor:status, mode: {mode}, start: 1.5, duration: 0.2}}]", tmp_path, 4.0)
+    assert summary.steps.total == 1 and summary.outcome is Outcome.TIMEOUT
+    assert reasons(tmp_path)["wait_for_goal"][-1][1] == "waits for a goal"
+
+
+def test_a_silent_operator_leaves_the_robot_standing_and_asked(tmp_path: Path):
+    summary = walk("faults: [{at: operator, mode: off, start: 0.01}]", tmp_path, 1.5, review=True)
+    assert summary.first_step_after_s is None
+    assert reasons(tmp_path)["review_body_path"][-1][1] == "waits for approval of body path 0"
 
 
 def test_a_planner_that_finds_nothing_and_one_that_raises(tmp_path: Path):

@@ -10,7 +10,8 @@ from lookstep.options import RunOptions
 from lookstep.replay import ReplayOptions, replay
 from lookstep.walk import walk
 
-WAIT = "/look_and_step/walk/sequence/go/walk_to/on_the_way/follow_path/selector/go_on/take_a_step/wait_for_swing"
+WALK = "/look_and_step/walk/sequence/go/walk_to/on_the_way/follow_path"
+WAIT = f"{WALK}/selector/go_on/halt_unless/take_a_step/wait_for_swing"
 
 
 class Person:

@@ -42,7 +42,7 @@ def test_played_back_outputs_decide_the_same(walked: Path):
 
 
 def test_an_edited_parameter_is_named_where_it_decides_otherwise(walked: Path):
-    fraction = f"{FOLLOW}/selector/go_on/take_a_step/wait_for_swing.fraction"
+    fraction = f"{FOLLOW}/selector/go_on/halt_unless/take_a_step/wait_for_swing.fraction"
     diff = replay(walked, ReplayOptions(assignments=(f"{fraction}=0.2",))).diff
     assert [difference.subject for difference in diff.tree] == [fraction]
     assert diff.first is not None and diff.first_command is not None

@@ -11,7 +11,14 @@ from numpy.typing import NDArray
 
 from behaviors import Status, Tree, parse_tree
 from behaviors.operator import ReviewParameters, SendGoal
-from skills.body_path import BodyPath, BodyPathParameters, Goal, SubGoalParameters, straight_path
+from skills.body_path import (
+    BodyPath,
+    BodyPathParameters,
+    Goal,
+    ImpassabilityParameters,
+    SubGoalParameters,
+    straight_path,
+)
 from skills.footsteps import (
     Footstep,
     FootstepParameters,
@@ -37,6 +44,7 @@ PARAMETERS: Mapping[str, Any] = {
     "sub_goal": SubGoalParameters(),
     "footsteps": FootstepParameters(),
     "terrain": TerrainParameters(),
+    "impassability": ImpassabilityParameters(),
     "review": ReviewParameters(body_path=False, footsteps=False),
 }
 _LIDAR = SpinningLidar(3, 4, 0.5, -0.5)
@@ -73,9 +81,10 @@ class WalkingRobot:
         """Shifting weight for a step."""
         self._say(WalkingPhase.TRANSFER, step, step, 0.0, TRANSFER)
 
-    def swing(self, step: Footstep, elapsed: float = 0.0) -> None:
+    def swing(self, step: Footstep, elapsed: float = 0.0, queue: tuple[Footstep, ...] = ()) -> None:
         """In the air with a step."""
         self._say(WalkingPhase.SWING, step, step, elapsed, SWING)
+        self._status = replace(self._status, queue=queue)
 
     def settle(self, last: Footstep) -> None:
         """In the double support after a step that none follows."""
@@ -85,6 +94,10 @@ class WalkingRobot:
     def fall(self) -> None:
         """Down, from whatever it was doing."""
         self._status = replace(self._status, phase=WalkingPhase.FALLEN, failure="the left sole swung into the ground")
+
+    def disable(self) -> None:
+        """Out of control of walking."""
+        self._status = replace(self._status, phase=WalkingPhase.DISABLED, failure="motors off")
 
     def state(self) -> RobotState:
         zeros = np.zeros(23)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
-from scripted_walk import WalkingRobot, ground, status_and_reason, step, tree_of
+from scripted_walk import PARAMETERS, WalkingRobot, ground, path, status_and_reason, step, tick, tree_of
 
-from behaviors import Status
+from behaviors import Status, Tree, parse_tree
+from behaviors.leaves import guards
 from behaviors.leaves.vain_attempts import VainAttempts
+from skills.body_path import ImpassabilityParameters, Obstacle
 from skills.regions import PlanarRegions
 
 GROUND_FRESH = "GroundFresh: {in: [ground], max_age: 1.5}"
@@ -29,6 +32,28 @@ def test_old_regions_are_refused_with_their_age_and_the_limit(age, status, reaso
 def test_ground_without_regions_is_refused():
     tree = tree_of(GROUND_FRESH, WalkingRobot(), ground=PlanarRegions((), 0.0, 0))
     assert status_and_reason(tree) == (Status.FAILURE, "no regions in sight")
+
+
+def test_old_data_of_the_robot_is_refused_with_its_age_and_the_limit():
+    robot = WalkingRobot()
+    tree = tree_of("RobotDataFresh: {max_age: 0.5}", robot)
+    assert status_and_reason(tree)[0] is Status.SUCCESS
+    old = robot.state()
+    robot.state = lambda: old  # type: ignore[method-assign]
+    robot.time = 0.7
+    tree = tree_of("RobotDataFresh: {max_age: 0.5}", robot)
+    assert status_and_reason(tree) == (Status.FAILURE, "robot data is 0.7 s old, limit 0.5 s")
+
+
+def test_disabled_is_told_with_what_happened():
+    robot = WalkingRobot()
+    assert status_and_reason(tree_of("RobotDisabled: {}", robot))[0] is Status.FAILURE
+    robot.disable()
+    assert status_and_reason(tree_of("RobotDisabled: {}", robot)) == (
+        Status.SUCCESS,
+        "the robot is disabled: motors off",
+    )
+    assert status_and_reason(tree_of("RobotFallen: {}", robot))[0] is Status.FAILURE
 
 
 def test_fallen_is_told_with_what_happened():
@@ -67,3 +92,34 @@ def test_the_way_is_blocked_after_so_many_attempts_in_vain(count, status, reason
 def test_the_way_is_not_blocked_before_anything_was_planned():
     tree = tree_of("NoWayOn: {attempts: 5}", WalkingRobot())
     assert status_and_reason(tree) == (Status.FAILURE, "0 of 5 attempts in a row were in vain")
+
+
+def test_it_waits_some_time_for_what_is_in_the_way_before_a_way_around_is_worth_while(monkeypatch):
+    thing: list[Obstacle] = []
+    monkeypatch.setattr(guards, "find_obstacle", lambda *given: thing[0] if thing else None)
+    robot = WalkingRobot()
+    robot.scan_id = 0
+    look = "{loop_forever: {UpdateHeightMap: {out: [height_map]}}}"
+    guard = "{loop_forever: {PathClear: {in: [path, height_map], out: [waits]}}}"
+    tree = Tree(
+        parse_tree(f"{{tree: t, ports: {{in: {{path: BodyPath}}}}, root: {{parallel: [{look}, {guard}]}}}}"),
+        robot,
+        parameters={**PARAMETERS, "impassability": ImpassabilityParameters(patience=2.0)},
+    )
+    node = next(node for node in tree.nodes if node.kind == "PathClear")
+    tree.set_input("path", path())
+
+    def after(seconds: float) -> tuple[Status, bool]:
+        for _ in range(round(seconds / 0.1)):
+            robot.scan_id += 1  # type: ignore[operator]
+            tick(tree, 5)
+        return node.status, tree.blackboard["waits"]
+
+    for _ in range(2):
+        assert after(0.5) == (Status.SUCCESS, False)
+        thing.append(Obstacle(1.2, 1.7, np.zeros((4, 3))))
+        assert after(1.8) == (Status.FAILURE, True)
+        assert node.reason == "path blocked: something 1.7 m high stands 1.2 m ahead"
+        assert after(0.4) == (Status.FAILURE, False)
+        thing.clear()
+    tree.shutdown()

@@ -49,8 +49,9 @@ def put(robot: WalkingRobot, x: float, y: float = 0.0) -> None:
 
 def seconds(tree: Tree, duration: float) -> None:
     robot = tree.context.robot.robot
-    for _ in range(round(50 * duration)):
+    for index in range(round(50 * duration)):
         robot.frame_id = 0 if robot.frame_id is None else robot.frame_id + 1  # type: ignore[attr-defined]
+        robot.scan_id += index % 10 == 0  # type: ignore[attr-defined]
         tick(tree)
 
 

@@ -20,6 +20,10 @@ root:
 """
 
 
+def swinging(robot: WalkingRobot) -> None:
+    robot.swing(step(4), 0.6)
+
+
 @pytest.fixture
 def requests(monkeypatch: pytest.MonkeyPatch) -> list[PlanRequest]:
     """What plans were asked for; each is answered by three steps."""
@@ -107,9 +111,23 @@ def test_a_plan_without_steps_fails_with_the_planners_reason(tree, monkeypatch):
     assert tree.blackboard["plan"] is None
 
 
+@pytest.mark.parametrize(("do", "longer"), [(WalkingRobot.stand, (1.0, 1.5, 2.0, 2.0)), (swinging, (1.0,) * 4)])
+def test_a_standing_robot_searches_longer_after_each_attempt_in_vain(tree, robot, monkeypatch, do, longer):
+    asked: list[PlanRequest] = []
+    monkeypatch.setattr(plan_steps, "plan_on_request", lambda request: asked.append(request) or blocked_plan())
+    tree.set_parameter("/planning/plan_footsteps", "longest", 2.0)
+    do(robot)
+    tick(tree, 100)
+    budgets = [job.budget for job in tree.drain_jobs()]
+    assert budgets[:4] == pytest.approx([0.2 * factor for factor in longer])
+    most = PARAMETERS["footsteps"].max_expansions
+    assert [request.footsteps.max_expansions for request in asked[:4]] == [factor * most for factor in longer]
+
+
 def test_attempts_in_vain_are_counted_until_a_plan_or_another_goal(tree, robot, requests, monkeypatch):
     answer = plan_steps.plan_on_request
     monkeypatch.setattr(plan_steps, "plan_on_request", lambda request: blocked_plan())
+    tree.set_parameter("/planning/plan_footsteps", "longer", 0.0)
     counts = []
     for length in (4.0, 4.0, 4.3, 6.0, 6.0):
         tree.set_input("sub_goal", sub_goal(path(length), robot.status().imminent_stance, PARAMETERS["sub_goal"]))

@@ -23,9 +23,9 @@ def ids(steps: tuple[Footstep, ...]) -> list[int]:
         (lambda robot: robot.swing(step(2)), [3, 4, 5]),
         (lambda robot: robot.transfer(step(3)), [3, 4, 5]),
         (lambda robot: robot.swing(step(3)), [4, 5]),
-        (lambda robot: robot.transfer(step(4)), [4, 5]),
+        (lambda robot: (robot.settle(step(3)), robot.transfer(step(4, x=0.8))), [4, 5]),
         (lambda robot: robot.settle(step(3)), [4, 5]),
-        (lambda robot: robot.stand(last=step(4)), [5]),
+        (lambda robot: (robot.settle(step(3)), robot.settle(step(4, x=0.8))), [5]),
     ],
     ids=[
         "before all",
@@ -52,6 +52,23 @@ def test_a_plan_of_which_every_step_has_begun_is_not_sent(do):
     tree = tree_of(SEND, robot, plan=plan(3))
     assert status_and_reason(tree) == (Status.FAILURE, "all planned steps have begun while they were planned")
     assert robot.commands == []
+
+
+def test_a_plan_whose_first_step_began_elsewhere_is_not_sent():
+    robot = WalkingRobot()
+    robot.swing(step(3, x=0.34))
+    tree = tree_of(SEND, robot, plan=plan(3))
+    assert status_and_reason(tree) == (Status.FAILURE, "step 3 began 0.06 m from its place in the plan")
+    assert robot.commands == []
+
+
+def test_a_plan_is_made_when_few_enough_steps_are_left():
+    robot = WalkingRobot()
+    tree = tree_of("WaitForQueue: {most: 3}", robot)
+    robot.swing(step(0), queue=plan(1).steps)
+    assert status_and_reason(tree) == (Status.RUNNING, "4 footsteps are incomplete, limit 3")
+    robot.swing(step(1), queue=plan(2, count=2).steps)
+    assert status_and_reason(tree)[0] is Status.SUCCESS
 
 
 @pytest.mark.parametrize("leaf", [SEND, WAIT])

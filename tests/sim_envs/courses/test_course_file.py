@@ -77,7 +77,7 @@ BROKEN = {
     ),
     GOOD_ENDS + "objects:\n- {type: larg_block, top: [0, 0, 0]}\n- {size: [1, 1, 0], top: [0, 0, 0]}": (
         'c.yaml:4:10: objects[0].type: got "larg_block"; did you mean "large_block"? '
-        "(allowed: small_block, medium_block, large_block, cinder_block, pallet)\n"
+        "(allowed: small_block, medium_block, large_block, cinder_block, pallet, person)\n"
         "c.yaml:5:17: objects[1].size[2]: got 0, allowed: 0.001 .. 1000 m"
     ),
     GOOD_ENDS + "objects:\n- {top: [0, 0, 0], position: [0, 0, 0], yaw_deg: 1, rpy_deg: [1, 2, 3]}": (
@@ -94,11 +94,14 @@ BROKEN = {
     ),
     GOOD_ENDS + "objects:\n- {type: pallet, top: [0, 0, 0], repeat: [{count: 50, offset: [1, 0, 0]}, "
     "{count: 50, offset: [0, 1, 0]}]}": "c.yaml:4:3: objects[0]: more than 2000 boxes",
+    GOOD_ENDS + PAD + "events:\n- {box: pad, after: 1}\n- {box: pad, after: 1}\n": (
+        'c.yaml:6:3: events[0]: no event before it moves "pad", after which it could'
+    ),
     GOOD_ENDS + PAD + "events:\n- {box: pda, time: 1}\n- {box: pad}\n- {box: pad, time: 1, distance: 2}\n"
     "- {box: pad, distance: -2}": (
         'c.yaml:6:9: events[0].box: no box "pda"; did you mean "pad"?\n'
-        'c.yaml:7:3: events[1]: needs either "distance" or "time"\n'
-        'c.yaml:8:3: events[2]: needs either "distance" or "time"\n'
+        'c.yaml:7:3: events[1]: needs one of "distance", "time" and "after"\n'
+        'c.yaml:8:3: events[2]: needs one of "distance", "time" and "after"\n'
         "c.yaml:9:24: events[3].distance: got -2, allowed: 0.001 .. 1000 m"
     ),
     "generator: {name: ruogh}": (

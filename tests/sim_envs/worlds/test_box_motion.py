@@ -37,3 +37,20 @@ def test_a_turn_takes_the_shorter_way_round():
     motions = BoxMotions((BoxEvent("b", end, duration=1.0, time=0.0),))
     motions.advance(0.0, _FAR, {"b": start})
     assert abs(motions.advance(0.5, _FAR, {"b": start})["b"].yaw) == pytest.approx(np.pi)
+
+
+def test_an_event_follows_the_one_before_it_of_the_same_box():
+    up, down = Pose.from_xyz_rpy((0.0, 0.0, 1.0)), Pose.from_xyz_rpy((0.0, 0.0, -1.0))
+    motions = BoxMotions(
+        (
+            BoxEvent("b", up, duration=0.0, distance=1.0),
+            BoxEvent("c", up, duration=0.0, time=0.1),
+            BoxEvent("b", down, duration=0.0, after=2.0),
+        )
+    )
+    poses = {"b": Pose.identity(), "c": Pose.identity()}
+    assert motions.advance(5.0, _FAR, poses) == {"c": up}
+    assert motions.advance(6.0, np.zeros(3), poses) == {"b": up}
+    assert motions.advance(7.9, _FAR, poses) == {}
+    assert motions.advance(8.0, _FAR, poses) == {"b": down}
+    assert motions.advance(99.0, np.zeros(3), poses) == {}
