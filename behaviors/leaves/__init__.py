@@ -1,7 +1,7 @@
 """The leaves of look-and-step: thin, each calls one skill or one command of the robot."""
 
 from behaviors.leaves.follow_path import FindSubGoal, GoalReached, PlanBodyPath, WaitForGoal, WatchGoal
-from behaviors.leaves.goals import GiveGoal, WatchCarrot
+from behaviors.leaves.goals import GiveGoal, WatchCarrot, WatchWaypoints
 from behaviors.leaves.guards import (
     GroundFresh,
     NotPaused,
@@ -45,4 +45,5 @@ __all__ = [
     "WaitUntilStanding",
     "WatchCarrot",
     "WatchGoal",
+    "WatchWaypoints",
 ]

@@ -10,7 +10,7 @@ from behaviors.halt import HaltCause
 from behaviors.leaf import Call, Leaf, SkillLeaf, SkillParameters
 from behaviors.leaves.vain_attempts import VainAttempts
 from behaviors.operator import SendGoal
-from behaviors.ports import Input, Output
+from behaviors.ports import Input, OptionalInput, Output
 from behaviors.registry import leaf
 from skills.body_path import (
     BodyPath,
@@ -19,6 +19,7 @@ from skills.body_path import (
     PathPlan,
     PathRequest,
     SubGoal,
+    Waypoints,
     goal_reached,
     plan_body_path,
     sub_goal,
@@ -29,10 +30,15 @@ from skills.parameters import parameter, parameters
 
 @leaf
 class WaitForGoal(Leaf):
-    """Waits until the operator sends a goal that is newer than the last one; a robot that cannot walk takes none."""
+    """Waits until the operator sends a newer goal, or gives the next waypoint; a robot that cannot walk takes none."""
 
     ends_with = (Status.SUCCESS,)
+    waypoints = OptionalInput(Waypoints, "places to visit in turn; without them it waits for each goal")
     goal = Output(Goal, "where the robot is sent")
+
+    def setup(self) -> None:
+        """No waypoint has been given."""
+        self._route_id, self._given = -1, 0
 
     def start(self) -> None:
         """An old goal does not count: whoever asks again waits for a new one."""
@@ -42,7 +48,7 @@ class WaitForGoal(Leaf):
         """SUCCESS when a goal arrives."""
         goals = [event.goal for event in self.context.operator_events if isinstance(event, SendGoal)]
         if not goals:
-            return self.running("waits for a goal")
+            return self._next_waypoint()
         status = self.context.robot.status()
         if status.unable:
             # Else it would walk off by itself once it stands again.
@@ -50,6 +56,19 @@ class WaitForGoal(Leaf):
             return self.running("waits for a goal that comes when the robot is on its feet")
         self.goal = goals[-1]
         self.log(f"new goal: x {goals[-1].x:.2f} m, y {goals[-1].y:.2f} m, yaw {goals[-1].yaw:.2f} rad")
+        return self.succeeded()
+
+    def _next_waypoint(self) -> Status:
+        route = self.waypoints
+        if route is None or self.context.robot.status().unable:
+            return self.running("waits for a goal")
+        if route.route_id != self._route_id:
+            self._route_id, self._given = route.route_id, 0
+        if self._given == len(route.goals):
+            return self.running(f"all {len(route.goals)} waypoints are visited; waits for a goal")
+        self.goal = route.goals[self._given]
+        self._given += 1
+        self.log(f"waypoint {self._given} of {len(route.goals)}: x {self.goal.x:.2f} m, y {self.goal.y:.2f} m")
         return self.succeeded()
 
 

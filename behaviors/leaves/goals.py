@@ -5,10 +5,10 @@ from __future__ import annotations
 from py_trees.common import Status
 
 from behaviors.leaf import Leaf
-from behaviors.operator import MoveCarrot
+from behaviors.operator import MoveCarrot, ResetBehavior, SendGoal, SendWaypoints
 from behaviors.ports import Output
 from behaviors.registry import leaf
-from skills.body_path import Goal
+from skills.body_path import Goal, Waypoints
 from skills.parameters import parameter, parameters
 
 
@@ -55,3 +55,24 @@ class WatchCarrot(Leaf):
             self.goal = carrots[-1]
         carrot = self.goal
         return self.running("waits for a carrot" if carrot is None else f"x {carrot.x:.2f} m, y {carrot.y:.2f} m")
+
+
+@leaf
+class WatchWaypoints(Leaf):
+    """Keeps the newest waypoints that the operator sends, until a goal, a reset or a fall ends their round."""
+
+    ends_with = ()
+    waypoints = Output(Waypoints, "places to visit in turn")
+
+    def tick(self) -> Status:
+        """RUNNING; nothing of a round is left once the robot could not walk."""
+        for event in self.context.operator_events:
+            if isinstance(event, SendWaypoints):
+                self.waypoints = Waypoints(self.context.new_id("waypoints"), event.goals)
+                self.log(f"{len(event.goals)} waypoints")
+            elif isinstance(event, SendGoal | ResetBehavior):
+                self.waypoints = None
+        if self.context.robot.status().unable:
+            self.waypoints = None
+        route = self.waypoints
+        return self.running("no waypoints" if route is None else f"{len(route.goals)} waypoints")

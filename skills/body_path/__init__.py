@@ -1,7 +1,7 @@
 """The way of the body from start to goal, and the sub-goals along it."""
 
 from skills.body_path.body_path import BodyPath, PathEnd
-from skills.body_path.goal import Goal
+from skills.body_path.goal import Goal, Waypoints
 from skills.body_path.impassability import ImpassabilityParameters, Obstacle, find_obstacle
 from skills.body_path.path_parameters import BodyPathParameters
 from skills.body_path.path_planner import PathPlan, PathRequest, plan_body_path
@@ -19,6 +19,7 @@ __all__ = [
     "PathRequest",
     "SubGoal",
     "SubGoalParameters",
+    "Waypoints",
     "find_obstacle",
     "goal_reached",
     "plan_body_path",

@@ -1,4 +1,4 @@
-"""Where the robot is sent."""
+"""Where the robot is sent: a place, or several in turn."""
 
 from __future__ import annotations
 
@@ -30,3 +30,16 @@ class Goal:
     def xyyaw_world(self) -> Array:
         """(3,): x, y [m], yaw [rad]."""
         return np.array((self.x, self.y, self.yaw))
+
+
+@dataclass(frozen=True, slots=True)
+class Waypoints:
+    """Places to be visited in turn.
+
+    Attributes:
+        route_id: unique over a run.
+        goals: at least one.
+    """
+
+    route_id: int
+    goals: tuple[Goal, ...]

@@ -7,6 +7,7 @@ import pytest
 from scripted_walk import PARAMETERS, WalkingRobot, goal, height_map, path, status_and_reason, step, tick, tree_of
 
 from behaviors import Outcome, Status, Tree, parse_tree
+from behaviors.operator import ResetBehavior, SendWaypoints
 from skills.body_path import BodyPath, Goal, PathEnd
 
 PLAN = "PlanBodyPath: {in: [goal, height_map], out: [path], latency: 0.04}"
@@ -145,3 +146,45 @@ def test_a_goal_ahead_is_not_reached_and_the_rest_of_the_way_is_told():
     robot.stand(x=1.0)
     tree = tree_of("GoalReached: {in: [goal, path]}", robot, path=path(4.0), goal=Goal(4.0, 0.0, 0.0))
     assert status_and_reason(tree) == (Status.FAILURE, "3.0 m to go on the path")
+
+
+ROUND = """{tree: t, root: {parallel: [WatchWaypoints: {out: [waypoints]}, loop_forever: {sequence: [
+WaitForGoal: {in: [waypoints], out: [goal]}, Wait: {duration: 0.1}]}]}}"""
+PLACES = SendWaypoints((Goal(1.0, 0.0, 0.0), Goal(2.0, 0.0, 0.0), Goal(3.0, 0.0, 0.0)))
+
+
+def test_waypoints_are_given_in_turn_once():
+    tree = Tree(parse_tree(ROUND), WalkingRobot())
+    tree.send(PLACES)
+    tick(tree, 60)
+    assert [line.text for line in tree.drain_log()] == [
+        "3 waypoints",
+        *(f"waypoint {place} of 3: x {place:.2f} m, y 0.00 m" for place in (1, 2, 3)),
+    ]
+    assert tree.blackboard["goal"] is None
+    tree.send(PLACES)
+    tick(tree)
+    assert tree.blackboard["goal"].x == 1.0  # The same places again are another round.
+
+
+@pytest.mark.parametrize("event", (goal(9.0), ResetBehavior()), ids=("goal", "reset"))
+def test_a_goal_or_a_reset_ends_the_round(event):
+    tree = Tree(parse_tree(ROUND), WalkingRobot())
+    tree.send(PLACES)
+    tick(tree)
+    tree.send(event)
+    tick(tree, 30)
+    assert tree.blackboard["waypoints"] is None
+    assert not any("waypoint 2" in line.text for line in tree.drain_log())
+
+
+def test_after_a_fall_no_waypoint_is_walked_to():
+    robot = WalkingRobot()
+    tree = Tree(parse_tree(ROUND), robot)
+    tree.send(PLACES)
+    tick(tree)
+    robot.fall()
+    tick(tree, 20)
+    robot.stand()
+    tick(tree, 20)
+    assert not any("waypoint 2" in line.text for line in tree.drain_log())
