@@ -22,7 +22,7 @@ AHEAD = straight_path(np.zeros(3), np.array((4.0, 0.0, 0.0)))
 def height_map(height: Callable[[Array, Array], Array]) -> HeightMap:
     """A map of 8 x 8 m around the origin with heights by x and y."""
     cells = RESOLUTION * (np.arange(160) + 0.5) - 4.0
-    x, y = np.meshgrid(cells, cells)
+    x, y = (np.asarray(grid, dtype=np.float64) for grid in np.meshgrid(cells, cells))
     heights = np.asarray(height(x, y) + np.zeros_like(x), dtype=np.float32)
     no = np.zeros(heights.shape, dtype=np.bool_)
     return HeightMap(
