@@ -24,6 +24,7 @@ from behaviors.operator import (
     SwitchImpassability,
 )
 from skills.body_path import Obstacle
+from skills.height_map import HeightMapParameters
 from skills.regions import NoiseLevel, PlanarRegions, RegionExtraction
 
 SPEC = load_tree(Path(__file__).parents[3] / "trees" / "look_and_step.yaml")
@@ -35,7 +36,8 @@ class Walk:
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, **parameters) -> None:
         self.robot = WalkingRobot()
-        self.tree = Tree(SPEC, self.robot, parameters={**PARAMETERS, **parameters})
+        small_map = HeightMapParameters(size=4.0, resolution=0.1, border=1.9)
+        self.tree = Tree(SPEC, self.robot, parameters={**PARAMETERS, "height_map": small_map, **parameters})
         self.sees = self.scans = True
         self.regions = True
         self.planner = lambda request: plan(request.first_sequence_id, plan_id=request.plan_id)
