@@ -155,6 +155,8 @@ class Statistics:
                 goal_active=not arrived,
                 blocked=HaltCause.BLOCKED in causes,
                 in_review=HaltCause.REVIEW in causes,
+                paused=HaltCause.OPERATOR in causes,
+                old_data=HaltCause.OLD_DATA in causes,
             )
         )
 

@@ -19,6 +19,8 @@ class PauseCause(Enum):
 
     REVIEW = "review"
     BLOCKED = "blocked"
+    OPERATOR = "operator"
+    OLD_DATA = "old_data"
     DCM_HOLD = "dcm_hold"
     NO_PLAN = "no_plan"
 
@@ -34,6 +36,8 @@ class PhaseSample:
         goal_active: whether a goal is set and not reached.
         blocked: whether the path is blocked.
         in_review: whether an operator is asked.
+        paused: whether an operator has paused the walk.
+        old_data: whether what the robot knows of itself or of the ground is too old to walk on.
     """
 
     time: float
@@ -42,6 +46,8 @@ class PhaseSample:
     goal_active: bool = True
     blocked: bool = False
     in_review: bool = False
+    paused: bool = False
+    old_data: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +112,10 @@ def _cause(span: list[PhaseSample], end: float) -> PauseCause:
             waited[PauseCause.REVIEW] += finish - begin
         elif sample.blocked:
             waited[PauseCause.BLOCKED] += finish - begin
+        elif sample.paused:
+            waited[PauseCause.OPERATOR] += finish - begin
+        elif sample.old_data:
+            waited[PauseCause.OLD_DATA] += finish - begin
         elif sample.transfer_overdue:
             waited[PauseCause.DCM_HOLD] += finish - begin
         elif sample.phase is WalkingPhase.STANDING:

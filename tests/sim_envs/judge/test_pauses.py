@@ -38,6 +38,8 @@ def test_only_more_than_the_limit_is_a_pause():
         (STAND, {}, PauseCause.NO_PLAN),
         (STAND, {"in_review": True}, PauseCause.REVIEW),
         (STAND, {"blocked": True}, PauseCause.BLOCKED),
+        (STAND, {"paused": True}, PauseCause.OPERATOR),
+        (STAND, {"old_data": True}, PauseCause.OLD_DATA),
         (TRANSFER, {"transfer_overdue": True}, PauseCause.DCM_HOLD),
     ],
 )
