@@ -106,7 +106,7 @@ def find_way(problem: PathProblem) -> tuple[Array, PathEnd, int]:
     if len(points) < 2:
         points = np.array((problem.start[:2], problem.start[:2]))
     end = _end(problem, reached)
-    if p.planner != LATTICE:
+    if p.planner != LATTICE and not np.array_equal(points[0], points[-1]):
         points = _way_of_ompl(problem, points, end)
     chosen = choose_points(ground.layers, ground.cells, scale, points)
     way = smooth(

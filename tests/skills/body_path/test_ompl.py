@@ -58,3 +58,11 @@ def test_without_ompl_the_failure_says_what_to_install(monkeypatch):
     plan = plan_body_path(request("BITstar"))
     assert plan.path is None and 'it needs the package "ompl"' in plan.failure
     assert plan_body_path(dataclasses.replace(request("lattice"))).path is not None
+
+
+def test_nothing_is_asked_where_there_is_nowhere_to_go():
+    wall = height_map(box(level(5.0, 5.0), (1.4, 1.6), (-3.0, 3.0), 1.0))
+    stuck = dataclasses.replace(request("RRTstar"), height_map=wall, start=np.array((1.1, 0.0, 0.0)))
+    plan = plan_body_path(stuck)
+    assert plan.path is not None and plan.path.end is PathEnd.GOAL_CUT_OFF
+    assert plan.path.length < 0.2
