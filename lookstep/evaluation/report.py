@@ -109,7 +109,7 @@ class Group:
 def why_failed(row: RunRow, case: Case) -> str:
     """Why a walk did not go as its case wants; empty where it did."""
     if row.outcome not in case.ends:
-        return f"{row.outcome.value}: {row.reason}"
+        return row.reason if row.reason.startswith(row.outcome.value) else f"{row.outcome.value}: {row.reason}"
     reactive = 0 if row.summary is None else row.summary.steps.reactive
     if reactive < case.least_reactive:
         return f"{reactive} reactive steps, needs {case.least_reactive}"

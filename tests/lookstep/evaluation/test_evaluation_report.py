@@ -33,6 +33,7 @@ def test_a_walk_fails_where_it_does_not_end_as_its_case_wants():
     assert why_failed(row(options), case) == ""
     assert why_failed(row(options, **FELL), case) == "fell: the DCM is 6 cm outside the support polygon"
     assert why_failed(row(options), blocked).startswith("goal_reached: ")
+    assert why_failed(row(options, outcome=Outcome.BLOCKED, reason="blocked: no ground"), case) == "blocked: no ground"
     assert why_failed(row(options, outcome=Outcome.BLOCKED, reason="blocked"), blocked) == ""
 
 
