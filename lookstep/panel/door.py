@@ -24,7 +24,7 @@ from lookstep.panel.address import Address, is_loopback
 
 _COOKIE = "lookstep_token"
 _LARGEST = 256 * 1024  # of one message from a client [bytes]
-_PING = 4.0  # A client that does not answer for so long is gone [s].
+_PING, _PONG = 5.0, 15.0  # A client is asked so often, and gone that does not answer for so long [s].
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,7 +79,7 @@ def guarded_door(address: Address) -> Iterator[None]:
             refused = answer(request.path, dict(request.headers.raw_items()), address)
             return process_request(connection, request) if refused is None else _response(refused)
 
-        limits = {"max_size": _LARGEST, "ping_interval": _PING, "ping_timeout": _PING}
+        limits = {"max_size": _LARGEST, "ping_interval": _PING, "ping_timeout": _PONG}
         return serve(handler, host, port, process_request=look, **(options | limits))
 
     websockets.asyncio.server.serve = guarded  # type: ignore[assignment,misc]

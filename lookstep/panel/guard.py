@@ -38,7 +38,7 @@ class Guard:
     """
 
     def __init__(
-        self, authority: Authority, tell: Callable[[str], None], now: Callable[[], float] = wall.monotonic
+        self, authority: Authority, tell: Callable[[str], object], now: Callable[[], float] = wall.monotonic
     ) -> None:
         self._authority, self._tell, self._now = authority, tell, now
         self._open_widgets: set[str] = set()

@@ -10,7 +10,7 @@ from lookstep.panel import words
 from lookstep.panel.authority import Authority
 from lookstep.panel.desk import Desk
 from lookstep.panel.direct_tab import DirectTab
-from lookstep.panel.guard import Guard, stand_guard
+from lookstep.panel.guard import Guard
 from lookstep.panel.parameter_tab import ParameterTab
 from lookstep.panel.review_tab import ReviewTab
 from lookstep.panel.robot_side import RobotSide
@@ -30,15 +30,17 @@ class Panel:
         server: shows it.
         robot: the robot's process.
         authority: who holds control.
+        guard: looks at messages of clients.
         first: the first snapshot.
     """
 
-    def __init__(self, server: viser.ViserServer, robot: RobotSide, authority: Authority, first: Snapshot) -> None:
+    def __init__(
+        self, server: viser.ViserServer, robot: RobotSide, authority: Authority, guard: Guard, first: Snapshot
+    ) -> None:
         server.gui.configure_theme(show_logo=False, show_share_button=False, brand_color=_BLUE)
         server.gui.set_panel_label("lookstep")
         self._authority = authority
         self._desk = desk = Desk(server, Scene(server, first), authority, robot, first)
-        guard = Guard(authority, desk.tell)
         gui = server.gui
         gui.main_panel.dock_right()
         self._headline = gui.add_markdown("")
@@ -68,7 +70,6 @@ class Panel:
             self._tree = TreeView(desk)
         beside.dock_left()
         self._next_text = self._next_tree = 0.0
-        stand_guard(server, guard)
 
     def update(self, snapshot: Snapshot, silence: float) -> None:
         """Show a moment, so long after it came [s]."""

@@ -11,7 +11,8 @@ import viser
 
 from lookstep.panel.authority import Authority
 from lookstep.panel.door import guarded_door
-from lookstep.panel.messages import Beat, Ready
+from lookstep.panel.guard import Guard, stand_guard
+from lookstep.panel.messages import Beat, Ready, Told
 from lookstep.panel.panel import Panel
 from lookstep.panel.robot_side import RobotSide
 
@@ -27,13 +28,16 @@ def main(read: int, write: int) -> None:
     address = robot.address
     with guarded_door(address):
         server = viser.ViserServer(host=address.host, port=address.port, label="lookstep", verbose=False)
+    # Before there is any widget that a client could use.
+    guard = Guard(authority, lambda text: robot.send(Told(text)))
+    stand_guard(server, guard)
     robot.send(Ready(f"http://{address.host}:{server.get_port()}/"))
     Thread(target=_beat, args=(robot, authority), daemon=True).start()
     number, first = 0, None
     while first is None and not robot.ended.is_set():
         number, first = robot.newest(number, _DRAW_PERIOD)
     if first is not None:
-        _show(robot, Panel(server, robot, authority, first), number)
+        _show(robot, Panel(server, robot, authority, guard, first), number)
     server.stop()
 
 

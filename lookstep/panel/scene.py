@@ -34,6 +34,7 @@ GROUPS = {
     "Ghost": True,
 }
 _LIFT = 0.03
+_PATH_PITCH = 0.1  # between two points of the path that is drawn [m]
 _CUBE_CORNERS = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)], np.float32)
 _CUBE_FACES = np.array(
     (
@@ -144,7 +145,7 @@ class Scene:
         group, height = _group("Body path and goal"), float(snapshot.state.stance.mid_feet[2])
         path, sub_goal, goal = snapshot.value(BodyPath), snapshot.value(SubGoal), snapshot.value(Goal)
         if self._is_new("path", path):
-            lines = [] if path is None else [shapes.path_line(path, height + _LIFT)]
+            lines = [] if path is None else [_on_ground(path, snapshot.value(HeightMap), height)]
             self._lines("path", f"{group}/path", lines, palette.BODY_PATH, 0.025)
         if self._is_new("sub_goal", sub_goal):
             self._remove("sub_goal")
@@ -287,6 +288,13 @@ class Scene:
 def _group(name: str) -> str:
     """The node of a group."""
     return "/" + name.split(" (")[0].lower().replace(" ", "_")
+
+
+def _on_ground(path: BodyPath, heights: HeightMap | None, otherwise: float) -> Array:
+    """The body path over the height map, (N, 3); at another height where the map knows none [m]."""
+    xy = np.array([path.at(arc)[:2] for arc in np.arange(0.0, path.length + _PATH_PITCH, _PATH_PITCH)])
+    z = np.full(len(xy), np.nan) if heights is None else heights.nearest(xy)
+    return np.column_stack((xy, np.where(np.isnan(z), otherwise, z) + _LIFT))
 
 
 def _raised(polygon: Array) -> Array:
