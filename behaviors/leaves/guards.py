@@ -127,7 +127,9 @@ class PathClearParameters:
 class PathClear(Leaf):
     """Succeeds while nothing stands in the way of the body within the horizon (`impassability`).
 
-    It says for how long it is worth while to wait for a thing to go, before a way around is planned.
+    What has come to a place that was seen clear may go again: it says for how long that is worth waiting for, before a
+    way around is planned. What was only not seen before stays: it counts when it is near, until then a way around is
+    planned while the robot walks.
     """
 
     Parameters = PathClearParameters
@@ -140,7 +142,9 @@ class PathClear(Leaf):
     def setup(self) -> None:
         """Nothing has been looked at, and nothing was in the way."""
         self._seen: tuple[object, ...] = ()
+        self._clear_map: HeightMap | None = None
         self._since: float | None = None
+        self._came = False
 
     def tick(self) -> Status:
         """FAILURE where something stands in the way, or the map is too old to tell."""
@@ -158,9 +162,14 @@ class PathClear(Leaf):
             self.obstacle = find_obstacle(self.path, stance, height_map, rules)
         found = self.obstacle
         if found is None:
+            self._clear_map = height_map
             return self._clear()
-        self._since = self.context.time if self._since is None else self._since
-        self.waits = self.context.time - self._since < rules.patience
+        if self._since is None:
+            self._since = self.context.time
+            self._came = self._clear_map is not None and found.has_come_since(self._clear_map)
+        self.waits = self._came and self.context.time - self._since < rules.patience
+        if not self._came and found.distance > rules.brake:
+            return self.succeeded()
         reason = f"path blocked: something {found.height:.1f} m high stands {found.distance:.1f} m ahead"
         return self.halted(HaltCause.BLOCKED, reason, Status.FAILURE)
 

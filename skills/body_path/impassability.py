@@ -27,6 +27,13 @@ class ImpassabilityParameters:
     horizon: float = parameter(
         1.8, unit="m", meaning="way ahead along the path that must be clear", minimum=0.3, maximum=10.0
     )
+    brake: float = parameter(
+        0.8,
+        unit="m",
+        meaning="way ahead that must be clear of what stood there before it was seen",
+        minimum=0.0,
+        maximum=10.0,
+    )
     near: float = parameter(0.3, unit="m", meaning="way ahead that is not looked at", minimum=0.0, maximum=1.0)
     width: float = parameter(0.6, unit="m", meaning="width of the strip that the body sweeps", minimum=0.1, maximum=2.0)
     base: float = parameter(
@@ -67,6 +74,11 @@ class Obstacle:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "points_world", readonly(self.points_world, (None, 3)))
+
+    def has_come_since(self, before: HeightMap) -> bool:
+        """Whether most of its cells were seen to be lower before, by more than half of its height."""
+        lower = before.nearest(self.points_world[:, :2]) < self.points_world[:, 2] - 0.5 * self.height
+        return bool(np.mean(lower) > 0.5)
 
 
 def find_obstacle(

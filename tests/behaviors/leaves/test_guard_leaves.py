@@ -94,8 +94,10 @@ def test_the_way_is_not_blocked_before_anything_was_planned():
     assert status_and_reason(tree) == (Status.FAILURE, "0 of 5 attempts in a row were in vain")
 
 
-def test_it_waits_some_time_for_what_is_in_the_way_before_a_way_around_is_worth_while(monkeypatch):
+@pytest.mark.parametrize("came", [True, False])
+def test_what_came_is_waited_for_some_time_and_what_was_only_not_seen_before_is_not(monkeypatch, came: bool):
     thing: list[Obstacle] = []
+    monkeypatch.setattr(Obstacle, "has_come_since", lambda self, before: came)
     monkeypatch.setattr(guards, "find_obstacle", lambda *given: thing[0] if thing else None)
     robot = WalkingRobot()
     robot.scan_id = 0
@@ -117,9 +119,11 @@ def test_it_waits_some_time_for_what_is_in_the_way_before_a_way_around_is_worth_
 
     for _ in range(2):
         assert after(0.5) == (Status.SUCCESS, False)
-        thing.append(Obstacle(1.2, 1.7, np.zeros((4, 3))))
-        assert after(1.8) == (Status.FAILURE, True)
-        assert node.reason == "path blocked: something 1.7 m high stands 1.2 m ahead"
+        thing.append(Obstacle(0.7, 1.7, np.zeros((4, 3))))
+        assert after(1.8) == (Status.FAILURE, came)
+        assert node.reason == "path blocked: something 1.7 m high stands 0.7 m ahead"
         assert after(0.4) == (Status.FAILURE, False)
+        thing[:] = [Obstacle(1.2, 1.7, np.zeros((4, 3)))]
+        assert after(0.4) == (Status.FAILURE if came else Status.SUCCESS, False)
         thing.clear()
     tree.shutdown()

@@ -100,3 +100,13 @@ def test_nothing_unknown_and_no_spike_is_an_obstacle():
 def test_the_way_ends_with_the_path():
     short = straight_path(np.zeros(3), np.array((1.0, 0.0, 0.0)))
     assert found(box(1.5, 0.0, 1.7), short) is None
+
+
+def test_a_thing_has_come_where_low_ground_was_seen_before_and_only_there():
+    person = box(1.5, 0.0, 1.7)
+    obstacle = found(person)
+    assert obstacle is not None
+    unseen = height_map(lambda x, y: np.where(x > 1.0, np.nan, 0.0))
+    assert obstacle.has_come_since(height_map(lambda x, y: 0.0 * x))
+    assert not obstacle.has_come_since(unseen)
+    assert not obstacle.has_come_since(height_map(person))
