@@ -10,6 +10,7 @@ import numpy as np
 
 from behaviors import Outcome
 from behaviors.halt import HaltCause
+from lookstep.carrot import LateralError
 from lookstep.configuration import Configuration
 from lookstep.control_health import ControlHealth
 from lookstep.deadlines import DeadlineAccounts
@@ -62,6 +63,7 @@ class Statistics:
         self._accounts = DeadlineAccounts()
         self._frames: dict[int, PlanarRegions] = {}
         self._last_plan: FootstepPlan | None = None
+        self._lateral_error = LateralError(world.course.carrot)
         self._in_view: list[bool] = []
         self._gave_up = False
         self._first_time = self._last_time = world.time
@@ -75,6 +77,7 @@ class Statistics:
         """Take note of one tick."""
         self._last_time, self._end_world = moment.time, moment.state.stance.mid_feet
         self._gave_up = moment.tree.outcome is Outcome.FAILURE and moment.blocked
+        self._lateral_error.observe(moment)
         self._note_moved_boxes(moment)
         self._note_phase(moment)
         for event in moment.events:
@@ -112,6 +115,7 @@ class Statistics:
             deadlines=self._accounts.report(),
             min_support_fraction=min(self._supports.values(), default=None),
             view_fraction=round(float(np.mean(self._in_view)), 4) if self._in_view else None,
+            lateral_error_m=self._lateral_error.mean,
             foothold_error_m=round(float(np.median(self._foothold_errors)), 6) if self._foothold_errors else None,
             control=self._health.figures(),
         )

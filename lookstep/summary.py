@@ -84,6 +84,8 @@ class Figures:
         deadlines: budget, use and margin of every leaf that computes.
         min_support_fraction: smallest share of a stance sole's area within 1 cm of true ground at mid-stance.
         view_fraction: share of plans whose footholds all lie on regions of the newest depth image.
+        lateral_error_m: mean distance of the true mid-feet from the way on which a carrot leads, while the robot walks;
+            None where the course has none.
         foothold_error_m: median distance of a landed sole's centre from its commanded foothold.
         control: how well the walking controller did.
     """
@@ -101,6 +103,7 @@ class Figures:
     deadlines: tuple[LeafDeadlines, ...]
     min_support_fraction: float | None
     view_fraction: float | None
+    lateral_error_m: float | None
     foothold_error_m: float | None
     control: ControlFigures
 

@@ -16,6 +16,7 @@ from behaviors import Executor, ExecutorMode, OperatorInbox, Robot, SettingError
 from behaviors import Outcome as TreeOutcome
 from behaviors.faults import Fault
 from behaviors.operator import ReviewParameters, SendGoal
+from lookstep.carrot import CarrotLeader
 from lookstep.configuration import FIXED_SUBJECTS, Assignments, Configuration, load_configuration, split_assignments
 from lookstep.control_health import ControlHealth
 from lookstep.errors import UserError
@@ -148,7 +149,9 @@ def _loop(
     faults: Sequence[Fault],
 ) -> _Ending:
     goal = Goal(*(options.goal or world.course.goal))
-    watches: list[LiveParameters | TreeReload] = []
+    watches: list[LiveParameters | TreeReload | CarrotLeader] = []
+    if world.course.carrot is not None:
+        watches.append(CarrotLeader(world.course.carrot, tree))
     if options.live is not None:
         watches.append(LiveParameters(options.live, tree))
     if options.reload:

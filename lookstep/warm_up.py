@@ -98,6 +98,8 @@ def _second_process() -> Iterator[None]:
     gc.disable()
     # Two processes must not write one cache at a time: each names what it writes without asking the other.
     beside = kernel_cache() / "beside"
+    # What a run that was killed has left there is worth nothing.
+    shutil.rmtree(beside, ignore_errors=True)
     try:
         shutil.rmtree(beside, ignore_errors=True)  # What a run left there that was killed.
         link_known(beside)

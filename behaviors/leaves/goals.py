@@ -1,14 +1,16 @@
-"""Goals that a tree gives itself, and goals that move."""
+"""Goals that a tree gives itself, and places in turn."""
 
 from __future__ import annotations
 
+import numpy as np
 from py_trees.common import Status
 
 from behaviors.leaf import Leaf
-from behaviors.operator import MoveCarrot, ResetBehavior, SendGoal, SendWaypoints
-from behaviors.ports import Output
+from behaviors.operator import ResetBehavior, SendGoal, SendWaypoints
+from behaviors.ports import Input, Output
 from behaviors.registry import leaf
 from skills.body_path import Goal, Waypoints
+from skills.geometry.pose import wrap_angle
 from skills.parameters import parameter, parameters
 
 
@@ -34,27 +36,49 @@ class GiveGoal(Leaf):
         """SUCCESS with the goal."""
         asked = self.parameters
         self.goal = Goal(asked.x, asked.y, asked.yaw)
-        return self.succeeded(f"x {asked.x:.2f} m, y {asked.y:.2f} m, yaw {asked.yaw:.2f} rad")
+        return self.succeeded(_told(self.goal))
+
+
+@parameters
+class GiveGoalFromHereParameters:
+    """How far to go from where the robot is going to stand, as it faces there."""
+
+    forward: float = parameter(0.0, unit="m", meaning="ahead; back where negative", minimum=-100.0, maximum=100.0)
+    left: float = parameter(0.0, unit="m", meaning="to the left; right where negative", minimum=-100.0, maximum=100.0)
+    turn: float = parameter(0.0, unit="rad", meaning="to the left; right where negative", minimum=-3.15, maximum=3.15)
 
 
 @leaf
-class WatchCarrot(Leaf):
-    """Gives the newest place that the operator holds out to the robot, for as long as it is ticked."""
+class GiveGoalFromHere(Leaf):
+    """Gives a goal by where it lies from the imminent stance, such as 2 m to the left."""
 
-    ends_with = ()
-    goal = Output(Goal, "where the carrot is")
-
-    def start(self) -> None:
-        """A carrot of before does not count."""
-        self.goal = None
+    Parameters = GiveGoalFromHereParameters
+    ends_with = (Status.SUCCESS,)
+    parameters: GiveGoalFromHereParameters
+    goal = Output(Goal, "where the robot is sent")
 
     def tick(self) -> Status:
-        """RUNNING; each event of the operator moves it."""
-        carrots = [event.goal for event in self.context.operator_events if isinstance(event, MoveCarrot)]
-        if carrots:
-            self.goal = carrots[-1]
-        carrot = self.goal
-        return self.running("waits for a carrot" if carrot is None else f"x {carrot.x:.2f} m, y {carrot.y:.2f} m")
+        """SUCCESS with the goal."""
+        by, stance = self.parameters, self.context.robot.status().imminent_stance
+        cos, sin = np.cos(stance.yaw), np.sin(stance.yaw)
+        x = stance.mid_feet[0] + cos * by.forward - sin * by.left
+        y = stance.mid_feet[1] + sin * by.forward + cos * by.left
+        self.goal = Goal(float(x), float(y), float(wrap_angle(stance.yaw + by.turn)))
+        return self.succeeded(_told(self.goal))
+
+
+@leaf
+class FacesGoal(Leaf):
+    """Succeeds when the imminent stance faces as at the goal, wherever it is."""
+
+    goal = Input(Goal, "where the robot is sent")
+
+    def tick(self) -> Status:
+        """SUCCESS with the goal's heading."""
+        turn = abs(float(wrap_angle(self.goal.yaw - self.context.robot.status().imminent_stance.yaw)))
+        if turn <= self.context.parameters["sub_goal"].goal_yaw:
+            return self.succeeded("the imminent stance faces as at the goal")
+        return self.failed(f"{turn:.1f} rad to turn")
 
 
 @leaf
@@ -76,3 +100,7 @@ class WatchWaypoints(Leaf):
             self.waypoints = None
         route = self.waypoints
         return self.running("no waypoints" if route is None else f"{len(route.goals)} waypoints")
+
+
+def _told(goal: Goal) -> str:
+    return f"x {goal.x:.2f} m, y {goal.y:.2f} m, yaw {goal.yaw:.2f} rad"

@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from skills.geometry.pose import Pose
+import numpy as np
+
+from skills.geometry.pose import Array, Pose, readonly
 
 
 class CourseError(ValueError):
@@ -58,14 +60,55 @@ class BoxEvent:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class CarrotWay:
+    """Where an operator leads a robot over a course: a place that moves on steadily.
+
+    Attributes:
+        points_world: (N >= 2, 2) the way from the start on [m].
+        speed: of the place along it [m/s].
+    """
+
+    points_world: Array
+    speed: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points_world", readonly(self.points_world, (None, 2)))
+
+    @property
+    def length(self) -> float:
+        """From end to end [m]."""
+        return float(self._arcs[-1])
+
+    def at(self, time: float) -> tuple[float, float, float]:
+        """The place a time [s] after it has left: x, y [m] and the direction of the way [rad]; at last it rests."""
+        arcs, arc = self._arcs, min(max(self.speed * time, 0.0), self.length)
+        i = int(np.clip(np.searchsorted(arcs, arc, side="right") - 1, 0, len(arcs) - 2))
+        span = self.points_world[i + 1] - self.points_world[i]
+        x, y = self.points_world[i] + span * (arc - arcs[i]) / max(arcs[i + 1] - arcs[i], 1e-12)
+        return float(x), float(y), float(np.arctan2(span[1], span[0]))
+
+    def distance(self, point_world: Array) -> float:
+        """How far a point, of which x and y count, is from the way [m]."""
+        starts, spans = self.points_world[:-1], np.diff(self.points_world, axis=0)
+        off = np.asarray(point_world)[:2] - starts
+        share = np.sum(off * spans, axis=1) / np.maximum(np.sum(spans * spans, axis=1), 1e-12)
+        return float(np.min(np.linalg.norm(off - np.clip(share, 0.0, 1.0)[:, None] * spans, axis=1)))
+
+    @property
+    def _arcs(self) -> Array:
+        return np.concatenate(([0.0], np.cumsum(np.linalg.norm(np.diff(self.points_world, axis=0), axis=1))))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Course:
-    """Boxes, start, goal and scripted events.
+    """Boxes, start, goal, scripted events, and a way on which a carrot moves.
 
     Attributes:
         name: of the generator or file.
         boxes: all ground there is.
         start, goal: x [m], y [m] and yaw [rad] on the ground.
         events: in the order of the file.
+        carrot: where an operator leads the robot; None where nobody does.
     """
 
     name: str
@@ -73,3 +116,4 @@ class Course:
     start: tuple[float, float, float]
     goal: tuple[float, float, float]
     events: tuple[BoxEvent, ...] = ()
+    carrot: CarrotWay | None = None

@@ -6,17 +6,14 @@ import dataclasses
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-
-from sim_envs.courses.block_field import FieldParameters, box_between, field_course, level_block, profile
+from sim_envs.courses.block_field import FieldParameters, box_between
 from sim_envs.courses.course import Course, CourseError
 from sim_envs.courses.detour import DetourParameters, detour
 from sim_envs.courses.moved_blocks import MovedBlocksParameters, moved_blocks
 from sim_envs.courses.rough import RoughParameters, rough
+from sim_envs.courses.uneven import UnevenFieldParameters, UnevenFlatParameters, uneven_field, uneven_flat
 from skills.parameters import parameter, parameters
 from strict_yaml import nearest
-
-_STOCK_HEIGHTS = (0.0, 0.0884, 0.1415, 0.192)  # Bare ground and the three sizes of block [m].
 
 
 @parameters
@@ -25,11 +22,6 @@ class FlatParameters:
 
     length: float = parameter(8.0, unit="m", minimum=1.0, maximum=100.0, meaning="distance from start to goal")
     width: float = parameter(2.4, unit="m", minimum=0.6, maximum=20.0, meaning="width of the slab")
-
-
-@parameters
-class UnevenFlatParameters(FieldParameters):
-    """Level blocks of the stock heights, higher in the middle of the way."""
 
 
 def flat(seed: int, parameters: FlatParameters) -> Course:
@@ -48,22 +40,10 @@ def flat(seed: int, parameters: FlatParameters) -> Course:
     return Course("flat", (slab,), (0.0, 0.0, 0.0), (parameters.length, 0.0, 0.0))
 
 
-def uneven_flat(seed: int, parameters: UnevenFlatParameters) -> Course:
-    """Level blocks whose heights are drawn from the stock, near a profile that rises and falls."""
-    generator = np.random.default_rng(seed)
-    top = len(_STOCK_HEIGHTS) - 1
-    blocks = []
-    for row in range(parameters.rows):
-        around = top * profile(row, parameters.rows)
-        for column in range(parameters.columns):
-            index = int(np.clip(round(around + generator.uniform(-1.5, 1.5)), 0, top))
-            blocks.append(level_block(row, column, _STOCK_HEIGHTS[index], parameters))
-    return field_course("uneven_flat", blocks, parameters)
-
-
 GENERATORS: dict[str, tuple[Callable[[int, Any], Course], type, dict[str, Any]]] = {
     "flat": (flat, FlatParameters, {}),
     "uneven_flat": (uneven_flat, UnevenFlatParameters, {}),
+    "uneven_field": (uneven_field, UnevenFieldParameters, {"rows": 13, "columns": 20}),
     "rough": (rough, RoughParameters, {}),
     "rough_wide": (rough, RoughParameters, {"rows": 11, "columns": 10, "peak": 0.2, "goal_y": 1.2}),
     "moved_blocks": (moved_blocks, MovedBlocksParameters, {}),

@@ -29,6 +29,7 @@ class BodyPath:
         path_id: unique over a run.
         end: whether it ends at the goal, and why not.
         goal_world: (3,) where it is to lead, x, y [m] and heading [rad]; its last waypoint where not given.
+        squares_up: whether the feet shall end beside each other right at its end; else near it is near enough.
         arc_lengths: distance from the start along the path to each waypoint, (N,) [m]; made from the waypoints.
     """
 
@@ -36,6 +37,7 @@ class BodyPath:
     path_id: int = 0
     end: PathEnd = PathEnd.GOAL
     goal_world: Array | None = None
+    squares_up: bool = True
     arc_lengths: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:

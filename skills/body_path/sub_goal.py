@@ -16,6 +16,9 @@ from skills.footsteps.footstep import Stance
 from skills.geometry.pose import Array, readonly, wrap_angle
 from skills.parameters import parameter, parameters
 
+# A way that leads farther from where the robot faces leads aside [rad].
+_ASIDE = 0.8
+
 
 @parameters
 class SubGoalParameters:
@@ -23,6 +26,9 @@ class SubGoalParameters:
 
     ahead: float = parameter(0.8, unit="m", meaning="sub-goal ahead of the stance", minimum=0.2, maximum=5.0)
     ahead_in_curve: float = parameter(0.4, unit="m", meaning="the same in tight curves", minimum=0.2, maximum=5.0)
+    ahead_aside: float = parameter(
+        0.35, unit="m", meaning="the same where the path leads sideways or back", minimum=0.1, maximum=5.0
+    )
     search_beyond: float = parameter(0.4, unit="m", meaning="search on past the sub-goal by", minimum=0.0, maximum=5.0)
     tight_turn: float = parameter(0.6, unit="rad", meaning="turn within `ahead` that is a tight curve", minimum=0.0)
     goal_distance: float = parameter(0.12, unit="m", meaning="position tolerance at the goal", minimum=0.01)
@@ -57,16 +63,20 @@ class SubGoal:
 
     @property
     def final(self) -> bool:
-        """Whether the search reaches the end of the path."""
-        return self.search_arc_length >= self.path.length
+        """Whether the search reaches the end of the path, and the feet shall stand there."""
+        return self.path.squares_up and self.search_arc_length >= self.path.length
 
 
 def sub_goal(path: BodyPath, imminent_stance: Stance, parameters: SubGoalParameters) -> SubGoal:
-    """Move along the path from the middle of the imminent stance: less far in tight curves."""
+    """Move along the path from the middle of the imminent stance, less far in curves and where steps are short."""
     start = path.project(imminent_stance.mid_feet)
-    ahead = parameters.ahead_in_curve if _turn(path, start, parameters) > parameters.tight_turn else parameters.ahead
+    ahead, beyond = parameters.ahead, parameters.search_beyond
+    if _leads_aside(path, start, min(start + ahead, path.length)):
+        ahead, beyond = parameters.ahead_aside, beyond * parameters.ahead_aside / ahead
+    elif _turn(path, start, parameters) > parameters.tight_turn:
+        ahead = parameters.ahead_in_curve
     arc_length = min(start + ahead, path.length)
-    end = min(arc_length + parameters.search_beyond, path.length)
+    end = min(arc_length + beyond, path.length)
     searched = np.array([(*path.at(s), s) for s in _stations(path, start, end)])
     return SubGoal(path, start, arc_length, end, searched)
 
@@ -82,6 +92,19 @@ def _turn(path: BodyPath, start: float, parameters: SubGoalParameters) -> float:
     """How much the path turns, in all, from the start to `ahead` [rad]."""
     headings = [path.at(s)[2] for s in _stations(path, start, min(start + parameters.ahead, path.length))]
     return sum(abs(wrap_angle(after - before)) for before, after in pairwise(headings))
+
+
+def _leads_aside(path: BodyPath, start: float, end: float) -> bool:
+    """Whether the path leads sideways or back all the way from start to end."""
+    poses = [path.at(s) for s in _stations(path, start, end)]
+    ways = [(after - before)[:2] for before, after in pairwise(poses)]
+    off = [
+        abs(wrap_angle(float(np.arctan2(way[1], way[0])) - pose[2]))
+        for way, ends in zip(ways, pairwise(poses), strict=True)
+        for pose in ends
+        if way.any()
+    ]
+    return min(off, default=0.0) > _ASIDE
 
 
 def _stations(path: BodyPath, start: float, end: float) -> list[float]:

@@ -122,6 +122,9 @@ class FootstepParameters:
     heading_tolerance: float = parameter(0.35, unit="rad", meaning="sub-goal tolerance of the heading", minimum=0.0)
     goal_tolerance: float = parameter(0.06, unit="m", meaning="distance of each foot from its place at the goal")
     goal_yaw_tolerance: float = parameter(0.13, unit="rad", meaning="heading of each foot off the goal's", minimum=0.0)
+    near_goal: float = parameter(
+        0.15, unit="m", meaning="that distance of the last foot, where feet need not end side by side", minimum=0.0
+    )
     goal_height_tolerance: float = parameter(0.3, unit="m", meaning="height of a foot off the goal's", minimum=0.0)
     final_turn: float = parameter(0.3, unit="m", meaning="distance at which the goal's heading is taken", minimum=0.0)
     field_cell: float = parameter(0.06, unit="m", meaning="cell of the field that guides a whole way", minimum=0.02)

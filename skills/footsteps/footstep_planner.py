@@ -19,6 +19,7 @@ from skills.footsteps.planned_steps import planned_steps
 from skills.footsteps.rejections import counted
 from skills.footsteps.search_log import SearchLog
 from skills.footsteps.search_target import SearchTarget, search_window
+from skills.footsteps.stride import stride_towards
 from skills.footsteps.terrain import Foothold, RegionTerrain, Terrain, region_terrain
 from skills.footsteps.way import Way, WayRules, after
 from skills.footsteps.way_search import Found, SearchBudget, search_way
@@ -183,7 +184,8 @@ class WayPlanner:
 
     def _way(self, kept: tuple[Foothold, ...], found: Found) -> Way:
         p, final = self._parameters, self._target.final
-        progress = (found.saved + self._saved(kept)) / p.step_cost * p.reach
+        stride = p.reach * (self._target.stride / stride_towards(0.0, p))
+        progress = (found.saved + self._saved(kept)) / p.step_cost * stride
         if found.reached:
             outcome = PlanOutcome.GOAL_REACHED if final else PlanOutcome.ENOUGH_STEPS
         else:

@@ -91,7 +91,7 @@ def _judge_by_path(
         # The piece of the path goes straight on at its ends, but not past the goal.
         if i > 0:
             t = max(t, 0.0)
-        if i < last - 1 or goal.final:
+        if i < last - 1 or goal.ends:
             t = min(t, 1.0)
         off_x, off_y = body_x - path[i, 0] - t * span_x, body_y - path[i, 1] - t * span_y
         off = off_x * off_x + off_y * off_y
@@ -102,17 +102,15 @@ def _judge_by_path(
     off_path = np.sqrt(nearest)
     turn = abs(wrapped(yaw - path[last, 2]))
     if goal.final:
-        near, aligned = limits.goal_tolerance, limits.goal_yaw_tolerance
         remaining = np.sqrt((body_x - path[last, 0]) ** 2 + (body_y - path[last, 1]) ** 2)
-        node.arrived = remaining <= near and turn <= aligned
+        node.arrived = remaining <= goal.along and turn <= goal.turn
     else:
-        near, aligned = limits.along_tolerance, limits.heading_tolerance
         remaining = max(goal.arc_length - arc_length, 0.0)
-        along, across = remaining / near, off_path / limits.across_tolerance
-        node.arrived = along * along + across * across <= 1.0 and turn <= aligned
+        along, across = remaining / goal.along, off_path / goal.across
+        node.arrived = along * along + across * across <= 1.0 and turn <= goal.turn
     node.off_path_cost = limits.path_cost * off_path + limits.yaw_cost * abs(off_heading)
     # What the tolerances spare is left out, so that the estimate never exceeds the true cost.
-    node.left = limits.step_cost * max((remaining - near) / limits.stride, (turn - aligned) / limits.turn, 0.0)
+    node.left = limits.step_cost * max((remaining - goal.along) / goal.stride, (turn - goal.turn) / limits.turn, 0.0)
 
 
 @kernel

@@ -24,6 +24,7 @@ from skills.footsteps.search_space import (
     SearchSpace,
 )
 from skills.footsteps.search_target import SearchTarget
+from skills.footsteps.stride import stride_towards
 from skills.footsteps.terrain import Terrain, foothold_rules, pack, slopes
 from skills.geometry.pose import Array
 
@@ -95,7 +96,8 @@ def _foot(stance: Stance, side: Side, corner: Array) -> tuple[float, ...]:
 
 def goal_record(target: SearchTarget) -> NDArray[np.void]:
     """What ends a search, as the kernels take it: one `SEARCH_GOAL`."""
-    return np.array([(target.arc_length, target.z, target.final)], dtype=SEARCH_GOAL)
+    row = (target.arc_length, target.z, target.stride, *target.tolerances, target.ends, target.final)
+    return np.array([row], dtype=SEARCH_GOAL)
 
 
 @lru_cache(maxsize=8)
@@ -107,8 +109,7 @@ def step_limits(parameters: FootstepParameters) -> NDArray[np.void]:
         "half_width": 0.5 * parameters.sole_width,
         "tilt_tangent": np.tan(parameters.tilt),
         "uphill_tangent": np.tan(parameters.uphill_slope),
-        # The body beside a foot moves on by the reach, and a little more where the foot turns.
-        "stride": parameters.reach + 0.5 * parameters.ideal_width * turn,
+        "stride": stride_towards(0.0, parameters),
         "turn": turn,
         "heading": 2 * np.pi / parameters.headings,
     }

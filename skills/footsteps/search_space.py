@@ -27,12 +27,20 @@ STEP_LIMITS = np.dtype(
             *("body_width", "body_depth", "body_base", "body_top", "step_over"),
             *("step_cost", "height_cost", "tilt_cost", "yaw_cost", "width_cost", "path_cost", "share_cost"),
             *("lattice", "heading", "stride", "turn", "heuristic_weight", "minimum_steps"),
-            *("along_tolerance", "across_tolerance", "heading_tolerance", "goal_tolerance", "goal_yaw_tolerance"),
-            *("goal_height_tolerance", "final_turn", "field_cell", "tilt_tangent"),
+            *("goal_tolerance", "goal_yaw_tolerance", "goal_height_tolerance", "final_turn", "field_cell"),
+            "tilt_tangent",
         )
     ]
 )
-SEARCH_GOAL = np.dtype([("arc_length", np.float64), ("z", np.float64), ("final", np.bool_)])
+# Progress that ends a search, height of the goal, most that a step brings the body on, what the last foot may be off
+# along the way, across it and in heading, whether the way ends there, and whether both feet are to stand at the end.
+SEARCH_GOAL = np.dtype(
+    [
+        *((name, np.float64) for name in ("arc_length", "z", "stride", "along", "across", "turn")),
+        ("ends", np.bool_),
+        ("final", np.bool_),
+    ]
+)
 # Numbers of floors, headings, rows and columns, those of the stance foot, and how many nodes one side has.
 LATTICE = np.dtype(
     [(name, np.int64) for name in ("floors", "headings", "ny", "nx", "floor", "heading", "iy", "ix", "stances")]

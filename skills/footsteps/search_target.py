@@ -10,6 +10,7 @@ import numpy as np
 from skills.footsteps.footstep import Stance
 from skills.footsteps.footstep_parameters import FootstepParameters
 from skills.footsteps.goal_field import empty_field
+from skills.footsteps.stride import stride_along
 from skills.geometry.pose import Array, wrap_angle
 
 if TYPE_CHECKING:
@@ -23,7 +24,10 @@ class SearchTarget:
     Attributes:
         path_world: the way there, (N >= 2, 4) rows of x, y [m], yaw [rad], arc length [m]; its end is the goal.
         arc_length: progress along it that ends the search, where it is not final [m].
+        ends: whether the way ends there, so that nothing is gained beyond.
         final: whether both feet are to stand at the end.
+        stride: most that a step brings the body on [m].
+        tolerances: what the last foot may be off along the way [m], across it [m] and in heading [rad].
         low_world, high_world: corners of the ground that is searched, (2,) [m].
         z: height of the goal [m]; counts with a field.
         field: see `goal_field`; empty where the path guides.
@@ -31,7 +35,10 @@ class SearchTarget:
 
     path_world: Array
     arc_length: float
+    ends: bool
     final: bool
+    stride: float
+    tolerances: tuple[float, float, float]
     low_world: Array
     high_world: Array
     z: float = 0.0
@@ -40,8 +47,16 @@ class SearchTarget:
     @classmethod
     def on_path(cls, goal: SubGoal, stance: Stance, parameters: FootstepParameters) -> SearchTarget:
         """Progress along a path."""
-        low, high = search_window(stance, goal, parameters)
-        return cls(goal.searched_world, goal.search_arc_length, goal.final, low, high)
+        p, (low, high) = parameters, search_window(stance, goal, parameters)
+        ends = goal.search_arc_length >= goal.path.length
+        if goal.final:
+            tolerances = p.goal_tolerance, p.goal_tolerance, p.goal_yaw_tolerance
+        elif ends:
+            tolerances = p.near_goal, p.near_goal, p.goal_yaw_tolerance
+        else:
+            tolerances = p.along_tolerance, p.across_tolerance, p.heading_tolerance
+        stride = stride_along(goal.searched_world, p)
+        return cls(goal.searched_world, goal.search_arc_length, ends, goal.final, stride, tolerances, low, high)
 
     def turn(self, yaw: float, parameters: FootstepParameters) -> float:
         """How far from a heading the headings that are searched go [rad]."""

@@ -19,6 +19,7 @@ from skills.footsteps.goal_field import open_edges, spread_field
 from skills.footsteps.search_log import SearchLog
 from skills.footsteps.search_request import step_limits
 from skills.footsteps.search_target import SearchTarget
+from skills.footsteps.stride import stride_towards
 from skills.footsteps.terrain import RegionTerrain, region_terrain
 from skills.footsteps.way import Way
 from skills.geometry.pose import Array, Pose
@@ -127,7 +128,9 @@ def _target(
         field, _, _ = _field(terrain, goal[:3], start, parameters)
     path = np.array(((*start[:2], stance.yaw, 0.0), (goal[0], goal[1], goal[3], 1.0)))
     low, high = _searched(terrain, field, start, parameters)
-    return SearchTarget(path, 1.0, True, low, high, float(goal[2]), field), reachable
+    stride, near = stride_towards(0.0, parameters), parameters.goal_tolerance
+    tolerances = near, near, parameters.goal_yaw_tolerance
+    return SearchTarget(path, 1.0, True, True, stride, tolerances, low, high, float(goal[2]), field), reachable
 
 
 def _field(

@@ -63,6 +63,7 @@ def summary(options: RunOptions, **figures) -> Summary:
         control=ControlFigures(10_000, 1, 0, 0.05, 0.002, 0.02, 0, 0.6),
         min_support_fraction=0.95,
         view_fraction=0.8,
+        lateral_error_m=None,
         foothold_error_m=0.001,
     )
     return Summary(**(known | figures))

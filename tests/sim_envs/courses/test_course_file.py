@@ -108,7 +108,7 @@ BROKEN = {
         'c.yaml:1:1: missing key "goal"\n'
         'c.yaml:1:1: missing key "start"\n'
         'c.yaml:1:19: generator.name: got "ruogh"; did you mean "rough"? '
-        "(generators: flat, uneven_flat, rough, rough_wide, moved_blocks, detour)"
+        "(generators: flat, uneven_flat, uneven_field, rough, rough_wide, moved_blocks, detour)"
     ),
     "generator: {name: flat, width: 99, lenght: 3}": (
         'c.yaml:1:1: missing key "goal"\n'
