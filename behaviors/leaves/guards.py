@@ -159,7 +159,8 @@ class PathClear(Leaf):
         if (height_map, self.path, rules) != self._seen:
             self._seen = (height_map, self.path, rules)
             stance = self.context.robot.status().imminent_stance
-            self.obstacle = find_obstacle(self.path, stance, height_map, rules)
+            halted = self._since is not None
+            self.obstacle = find_obstacle(self.path, stance, height_map, rules, halted=halted)
         found = self.obstacle
         if found is None:
             self._clear_map = height_map

@@ -27,6 +27,9 @@ class ImpassabilityParameters:
     horizon: float = parameter(
         1.8, unit="m", meaning="way ahead along the path that must be clear", minimum=0.3, maximum=10.0
     )
+    release: float = parameter(
+        0.4, unit="m", meaning="way beyond the horizon that must be clear as well to go on", minimum=0.0, maximum=10.0
+    )
     brake: float = parameter(
         0.8,
         unit="m",
@@ -82,12 +85,26 @@ class Obstacle:
 
 
 def find_obstacle(
-    path: BodyPath, imminent_stance: Stance, height_map: HeightMap, parameters: ImpassabilityParameters
+    path: BodyPath,
+    imminent_stance: Stance,
+    height_map: HeightMap,
+    parameters: ImpassabilityParameters,
+    *,
+    halted: bool = False,
 ) -> Obstacle | None:
-    """The first thing that stands on the path within the horizon; None where the way is clear, as far as is known."""
+    """The first thing that stands on the path within the horizon; None where the way is clear, as far as is known.
+
+    Args:
+        path: where the body is to go.
+        imminent_stance: from where.
+        height_map: what is known of the ground and of what stands on it.
+        parameters: what counts.
+        halted: whether the robot stands because of a thing: to go on, it needs a little more than the horizon.
+    """
     p, step = parameters, height_map.resolution
     start = path.project(imminent_stance.mid_feet)
-    stations = np.arange(start + 0.5 * step, min(start + p.horizon, path.length), step)
+    horizon = p.horizon + (p.release if halted else 0.0)
+    stations = np.arange(start + 0.5 * step, min(start + horizon, path.length), step)
     if not len(stations):
         return None
     poses = np.array([path.at(s) for s in stations])

@@ -98,7 +98,7 @@ def test_the_way_is_not_blocked_before_anything_was_planned():
 def test_what_came_is_waited_for_some_time_and_what_was_only_not_seen_before_is_not(monkeypatch, came: bool):
     thing: list[Obstacle] = []
     monkeypatch.setattr(Obstacle, "has_come_since", lambda self, before: came)
-    monkeypatch.setattr(guards, "find_obstacle", lambda *given: thing[0] if thing else None)
+    monkeypatch.setattr(guards, "find_obstacle", lambda *given, halted: thing[0] if thing else None)
     robot = WalkingRobot()
     robot.scan_id = 0
     look = "{loop_forever: {UpdateHeightMap: {out: [height_map]}}}"

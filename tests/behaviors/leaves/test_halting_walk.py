@@ -53,7 +53,7 @@ class Walk:
 
         monkeypatch.setattr(plan_steps, "plan_on_request", answer)
         monkeypatch.setattr(look, "examine_regions", examine)
-        monkeypatch.setattr(guards, "find_obstacle", lambda *given: self.obstacle)
+        monkeypatch.setattr(guards, "find_obstacle", lambda *given, halted: self.obstacle)
         monkeypatch.setattr(Obstacle, "has_come_since", lambda obstacle, before: True)
 
     def go(self, seconds: float) -> None:

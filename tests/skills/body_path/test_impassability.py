@@ -110,3 +110,10 @@ def test_a_thing_has_come_where_low_ground_was_seen_before_and_only_there():
     assert obstacle.has_come_since(height_map(lambda x, y: 0.0 * x))
     assert not obstacle.has_come_since(unseen)
     assert not obstacle.has_come_since(height_map(person))
+
+
+def test_a_halted_robot_needs_a_little_more_than_the_horizon_to_go_on():
+    seen = height_map(box(2.2, 0.0, 1.7))
+    assert find_obstacle(AHEAD, stance_at(), seen, RULES) is None
+    assert find_obstacle(AHEAD, stance_at(), seen, RULES, halted=True) is not None
+    assert find_obstacle(AHEAD, stance_at(), height_map(box(2.5, 0.0, 1.7)), RULES, halted=True) is None
