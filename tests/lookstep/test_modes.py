@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from lookstep.walk import walk
 from skills.geometry.pose import wrap_angle
 
 SMALL_CAMERA = "camera.resolution=0.3125"
-WIDE = {"robot": "atlas_class_wide", "world": "kinematic", "preset": "fast"}
+WIDE: dict[str, Any] = {"robot": "atlas_class_wide", "world": "kinematic", "preset": "fast"}
 
 
 class Way:
