@@ -55,15 +55,19 @@ def _check(name: str) -> tuple[str, tuple[Problem, ...]]:
         YamlError: where it has problems.
     """
     from lookstep.configuration import SUBJECTS
+    from lookstep.evaluation.suite import load_suite
     from sim_envs.courses import load_course
 
     path = tree_path(name)
     document = load_document(path)
     keys = set(document.keys) if document.kind is Kind.MAPPING else set()
     if "tree" not in keys:
-        if path.stem in SUBJECTS:
+        if path.stem in SUBJECTS and path.parent.name != "presets":
             _check_config(document, SUBJECTS[path.stem], path.stem)
             return "config", ()
+        if "cases" in keys:
+            load_suite(str(path))
+            return "suite", ()
         if keys & _COURSE_KEYS:
             load_course(str(path))
             return "course", ()

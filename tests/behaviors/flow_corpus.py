@@ -5,7 +5,9 @@ from __future__ import annotations
 from scripted import toys
 
 from behaviors import Input, Leaf, Output, Registry, Status
+from strict_yaml import shipped_folder
 
+SHIPPED = sorted(path.stem for path in shipped_folder("trees").glob("*.yaml"))
 measures = Registry()
 for _cls in toys.classes:
     measures(_cls)
@@ -291,8 +293,8 @@ t.yaml:3:101: got 3, needs text""",
     ),
     "an included tree that is not shipped": (
         "{tree: t, include: [look_and_stp], root: Scripted}",
-        't.yaml:1:21: unknown tree "look_and_stp"; did you mean "look_and_step"? (shipped: follow_carrot, '
-        "inspect_and_return, look_and_step, patrol; or a .yaml file)",
+        't.yaml:1:21: unknown tree "look_and_stp"; did you mean "look_and_step"? (shipped: '
+        f"{', '.join(SHIPPED)}; or a .yaml file)",
     ),
 }
 

@@ -19,7 +19,7 @@ from strict_yaml import shipped, shipped_folder
 
 PAGE = (Path(__file__).parents[2] / "docs" / "behaviors.md").read_text(encoding="utf-8")
 FAST: dict[str, Any] = {"course": "flat", "world": "kinematic", "preset": "fast"}
-SMALL_CAMERA = "camera.resolution=0.3125"
+SMALL_CAMERA = "camera.resolution=0.5"
 TREES = ("patrol", "inspect_and_return", "follow_carrot")
 
 
