@@ -22,9 +22,11 @@ def walk(course: str, *, seed: int = 0, time_limit: float = 120.0, **options) ->
     return lookstep.run(course=course, seed=seed, time_limit=time_limit, assignments=SMALL_CAMERA, **options)
 
 
-@pytest.mark.parametrize(("course", "seed"), [("flat", 0), ("uneven_flat", 1), ("rough", 2), ("stairs", 0)])
-def test_robot_reaches_the_goal_without_a_pause(course, seed):
-    summary = walk(course, seed=seed)
+@pytest.mark.parametrize(
+    ("course", "seed", "world"), [("uneven_flat", 1, "kinematic"), ("rough", 2, "physics"), ("stairs", 0, "kinematic")]
+)
+def test_robot_reaches_the_goal_without_a_pause(course, seed, world):
+    summary = walk(course, seed=seed, world=world, preset="fast")
     assert summary.outcome is Outcome.GOAL_REACHED, summary.reason
     assert summary.pauses.count == 0
     assert summary.min_support_fraction is not None and summary.min_support_fraction >= 0.6
@@ -39,7 +41,7 @@ def test_robot_ends_as_blocked_and_standing_where_the_ground_ends(tmp_path):
     pads = ((3.0, 0.5), (1.0, 4.0))
     objects = "".join(f"  - {{size: [{length}, 1.2, 0.2], position: [{x}, 0, -0.1]}}\n" for length, x in pads)
     course.write_text(f"start: {{x: 0, y: 0}}\ngoal: {{x: 4, y: 0}}\nobjects:\n{objects}")
-    summary = walk(str(course), time_limit=40.0)
+    summary = walk(str(course), time_limit=40.0, world="kinematic", preset="fast")
     assert summary.outcome is Outcome.BLOCKED
     assert summary.reason.startswith("blocked: 20 attempts to plan a step were in vain, the last: no way on: ")
     assert 0.5 < summary.distance_m < 2.0
