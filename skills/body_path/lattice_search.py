@@ -60,7 +60,7 @@ def search_lattice(
     nodes = rows * columns
     at_start, at_goal = nodes, nodes + 1
     costs, parents = np.full(nodes + 2, np.inf), np.full(nodes + 2, -1)
-    closed, arrivals = np.zeros(nodes + 2, np.bool_), np.full(nodes + 2, -1, np.int8)
+    closed = np.zeros(nodes + 2, np.bool_)
     densities, fits = np.full((nodes, _ALL), np.nan), np.full((nodes, _HALF), -1, np.int8)
     heads = np.empty((_ALL, 3))
     for d in range(_ALL):
@@ -115,9 +115,7 @@ def search_lattice(
                 continue
             if heads[d, 2] > 1.0 and not body_fits(layers, cells, scale, 0.5 * (x + to_x), 0.5 * (y + to_y), cos, sin):
                 continue
-            if not _can_turn(layers, cells, scale, fits, heads, node, int(arrivals[node]), d, x, y):
-                continue
-            costs[to], parents[to], arrivals[to] = through, node, d
+            costs[to], parents[to] = through, node
             size = push(open_list, size, through + _apart(to_x, to_y, goal), through, to, node)
     reached = bool(closed[at_goal])
     end = at_goal if reached else nearest
@@ -217,35 +215,6 @@ def _fits(
     if fits[node, d % _HALF] < 0:
         fits[node, d % _HALF] = body_fits(layers, cells, scale, x, y, cos, sin)
     return fits[node, d % _HALF] == 1
-
-
-@kernel
-def _can_turn(
-    layers: Array,
-    cells: NDArray[np.float32],
-    scale: Records,
-    fits: NDArray[np.int8],
-    heads: Array,
-    node: int,
-    arrival: int,
-    departure: int,
-    x: float,
-    y: float,
-) -> bool:
-    """Whether the body fits at a node with all headings between those with which it comes and goes.
-
-    Without this it would squeeze through gaps that it fits in sideways, by going to and fro.
-    """
-    if arrival < 0:
-        return True
-    turn = (departure - arrival) % _ALL
-    step = 1 if turn <= _HALF else -1
-    d = arrival
-    while d != departure:
-        if not _fits(layers, cells, scale, fits, node, d, x, y, heads[d, 0], heads[d, 1]):
-            return False
-        d = (d + step) % _ALL
-    return True
 
 
 @kernel

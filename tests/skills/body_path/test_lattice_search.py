@@ -125,11 +125,3 @@ def test_a_start_too_near_to_a_block_is_left_but_not_onto_the_block():
     assert reached
     assert (points[1:, 0] < 0.0).any()
     assert not ((points[:, 0] > 0.3) & (points[:, 0] < 1.5) & (np.abs(points[:, 1]) < 1.0)).any()
-
-
-def test_nobody_squeezes_sideways_through_a_gap_by_going_to_and_fro():
-    gap = box(box(level(), (1.8, 3.0), (-3.0, 3.0), 1.0), (1.8, 3.0), (-0.35, 0.35), 0.0)
-    assert PARAMETERS.body_depth < 0.7 < PARAMETERS.body_width
-    points, _, reached, _ = search(problem(gap))
-    assert not reached
-    assert points[:, 0].max() < 2.0
