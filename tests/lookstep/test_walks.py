@@ -18,8 +18,10 @@ from skills.geometry import Pose
 SMALL_CAMERA = ("camera.resolution=0.3125",)
 
 
-def walk(course: str, *, seed: int = 0, time_limit: float = 120.0, **options) -> Summary:
-    return lookstep.run(course=course, seed=seed, time_limit=time_limit, assignments=SMALL_CAMERA, **options)
+def walk(course: str, *, seed: int = 0, world: str = "kinematic", time_limit: float = 120.0, **options) -> Summary:
+    return lookstep.run(
+        course=course, seed=seed, world=world, time_limit=time_limit, assignments=SMALL_CAMERA, **options
+    )
 
 
 @pytest.mark.parametrize(
@@ -41,7 +43,7 @@ def test_robot_ends_as_blocked_and_standing_where_the_ground_ends(tmp_path):
     pads = ((3.0, 0.5), (1.0, 4.0))
     objects = "".join(f"  - {{size: [{length}, 1.2, 0.2], position: [{x}, 0, -0.1]}}\n" for length, x in pads)
     course.write_text(f"start: {{x: 0, y: 0}}\ngoal: {{x: 4, y: 0}}\nobjects:\n{objects}")
-    summary = walk(str(course), time_limit=40.0, world="kinematic", preset="fast")
+    summary = walk(str(course), time_limit=40.0, preset="fast")
     assert summary.outcome is Outcome.BLOCKED
     assert summary.reason.startswith("blocked: 20 attempts to plan a step were in vain, the last: no way on: ")
     assert 0.5 < summary.distance_m < 2.0
