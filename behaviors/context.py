@@ -20,7 +20,7 @@ class LogLine:
 
     Attributes:
         time: robot time [s].
-        path: the node that wrote it.
+        path: the node that wrote it; "walker" for the walking controller.
         level: "info", "warning" or "error".
         text: what it says.
     """

@@ -20,8 +20,6 @@ from typing import Any
 
 from strict_yaml import Kind, Location, Node, Problem, YamlError, nearest, read_dataclass
 
-SENSORS = ("depth", "lidar", "state", "status")
-
 
 class FaultMode(Enum):
     """How something breaks.

@@ -69,13 +69,16 @@ class ControlHealth:
 
     def watch(self, samples: tuple[ControlSample, ...]) -> tuple[LogLine, ...]:
         """Count what is in new samples, and say what the operator should hear."""
+        if not samples:
+            return ()
         lines: list[LogLine] = []
         cop_errors = np.array([sample.cop_error for sample in samples])
         self._cop_errors.append(cop_errors[np.isfinite(cop_errors)])
+        self._dcm_error_max = max(self._dcm_error_max, *(sample.dcm_error for sample in samples))
+        torque_share = float(np.abs([sample.torque_shares for sample in samples]).max())
+        self._torque_share_max = max(self._torque_share_max, torque_share)
         for sample, cop_error in zip(samples, cop_errors.tolist(), strict=True):
             self._statuses[sample.qp_status] += 1
-            self._dcm_error_max = max(self._dcm_error_max, sample.dcm_error)
-            self._torque_share_max = max(self._torque_share_max, float(np.max(np.abs(sample.torque_shares))))
             lines += self._program(sample)
             lines += self._pressure(sample.time, cop_error)
         return tuple(lines)

@@ -47,6 +47,7 @@ class KernelCacheLocator(UserProvidedCacheLocator):
         return locator
 
 
+@cache
 def kernels_hash() -> str:
     """Hash of all sources behind all kernels."""
     digest = hashlib.blake2b(digest_size=8)

@@ -55,7 +55,7 @@ class WaitForGoal(Leaf):
             self.log(f"goal refused: {status.unable}", level="warning")
             return self.running("waits for a goal that comes when the robot is on its feet")
         self.goal = goals[-1]
-        self.log(f"new goal: x {goals[-1].x:.2f} m, y {goals[-1].y:.2f} m, yaw {goals[-1].yaw:.2f} rad")
+        self.log(f"new goal: {goals[-1]}")
         return self.succeeded()
 
     def _next_waypoint(self) -> Status:
@@ -84,7 +84,7 @@ class WatchGoal(Leaf):
         goals = [event.goal for event in self.context.operator_events if isinstance(event, SendGoal)]
         if goals and goals[-1] != self.goal:
             self.goal = goals[-1]
-            self.log(f"new goal: x {goals[-1].x:.2f} m, y {goals[-1].y:.2f} m, yaw {goals[-1].yaw:.2f} rad")
+            self.log(f"new goal: {goals[-1]}")
         return self.running("takes new goals")
 
 

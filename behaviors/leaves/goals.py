@@ -36,7 +36,7 @@ class GiveGoal(Leaf):
         """SUCCESS with the goal."""
         asked = self.parameters
         self.goal = Goal(asked.x, asked.y, asked.yaw)
-        return self.succeeded(_told(self.goal))
+        return self.succeeded(str(self.goal))
 
 
 @parameters
@@ -64,7 +64,7 @@ class GiveGoalFromHere(Leaf):
         x = stance.mid_feet[0] + cos * by.forward - sin * by.left
         y = stance.mid_feet[1] + sin * by.forward + cos * by.left
         self.goal = Goal(float(x), float(y), float(wrap_angle(stance.yaw + by.turn)))
-        return self.succeeded(_told(self.goal))
+        return self.succeeded(str(self.goal))
 
 
 @leaf
@@ -100,7 +100,3 @@ class WatchWaypoints(Leaf):
             self.waypoints = None
         route = self.waypoints
         return self.running("no waypoints" if route is None else f"{len(route.goals)} waypoints")
-
-
-def _told(goal: Goal) -> str:
-    return f"x {goal.x:.2f} m, y {goal.y:.2f} m, yaw {goal.yaw:.2f} rad"

@@ -90,11 +90,6 @@ class Child:
             thread.start()
 
     @property
-    def process_id(self) -> int:
-        """Of the process."""
-        return self._process.pid
-
-    @property
     def status(self) -> int | None:
         """Its exit status; None while it runs."""
         return self._process.poll()

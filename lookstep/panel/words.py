@@ -102,7 +102,7 @@ def figures(snapshot: Snapshot) -> str:
         ("regions", "-" if regions is None else f"{len(regions.regions)}, {snapshot.time - regions.time:.2f} s old"),
         ("depth frame", "-" if extraction is None else f"{extraction.regions.frame_id}"),
         ("height map", "-" if heights is None else f"{snapshot.time - heights.time:.2f} s old"),
-        ("goal", "none" if goal is None else f"x {goal.x:.2f} m, y {goal.y:.2f} m, yaw {goal.yaw:.2f} rad"),
+        ("goal", "none" if goal is None else str(goal)),
         ("plan", "-" if plan is None else f"{plan.plan_id}: {len(plan.steps)} steps, {_plain(plan.outcome.value)}"),
         ("plan log", f"`{snapshot.stage.plan_log}`" if snapshot.stage.plan_log else "not kept (`--plans DIR`)"),
     ]

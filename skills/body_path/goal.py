@@ -26,6 +26,9 @@ class Goal:
         if not np.isfinite([self.x, self.y, self.yaw]).all():
             raise ValueError(f"got goal ({self.x}, {self.y}, {self.yaw}), needs finite numbers")
 
+    def __str__(self) -> str:
+        return f"x {self.x:.2f} m, y {self.y:.2f} m, yaw {self.yaw:.2f} rad"
+
     @property
     def xyyaw_world(self) -> Array:
         """(3,): x, y [m], yaw [rad]."""

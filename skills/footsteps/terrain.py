@@ -25,7 +25,6 @@ from skills.geometry.pose import Array, Pose, readonly
 from skills.regions.planar_region import PlanarRegion, PlanarRegions
 
 _MOST_FLOORS = 4
-_NO_EDGES = readonly(np.zeros((0, 3)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,8 +78,8 @@ class Terrain(Protocol):
         """The planar region that is the ground nearest to a point; None where there is none."""
         ...
 
-    def edges(self, T_world_sole: Pose, near: float) -> Array:
-        """Edges of the region under a sole that come near its centre and have it inside; none without ground.
+    def edges(self, T_world_sole: Pose, near: float) -> Array | None:
+        """Edges of the region under a sole that come near its centre and have it inside; None without ground.
 
         Returns:
             (N, 3) unit outward normal x, y and offset from the centre, in the sole's frame [m].
@@ -126,10 +125,10 @@ class RegionTerrain:
         plane = self._plane(p_world)
         return self.ground[plane] if plane >= 0 else None
 
-    def edges(self, T_world_sole: Pose, near: float) -> Array:
-        """Edges of the region under a sole that come near its centre and have it inside; none without ground."""
+    def edges(self, T_world_sole: Pose, near: float) -> Array | None:
+        """Edges of the region under a sole that come near its centre and have it inside; None without ground."""
         plane = self._plane(T_world_sole.p)
-        return edges_near(self.outlines, plane, T_world_sole.R, T_world_sole.p, near) if plane >= 0 else _NO_EDGES
+        return edges_near(self.outlines, plane, T_world_sole.R, T_world_sole.p, near) if plane >= 0 else None
 
     def _plane(self, p_world: Array) -> int:
         """Index of the region that is the ground nearest to a point; -1 where there is none."""

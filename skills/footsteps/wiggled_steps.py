@@ -73,12 +73,12 @@ def _farther_off(before_xy: Array, after_xy: Array, goal_xy: Array, parameters: 
 def _wanted(terrain: Terrain, T_world_sole: Pose, parameters: FootstepParameters) -> tuple[float, Array]:
     """The margin that a sole has inside its region, and the move (x, y, turn) in its frame that it asks for."""
     move = np.zeros(3)
-    if terrain.region(T_world_sole.p) is None:
-        return 0.0, move
     near = (
         0.5 * hypot(parameters.sole_length, parameters.sole_width) + parameters.wiggle_margin + parameters.wiggle_move
     )
     edges, sole = terrain.edges(T_world_sole, near), whole_sole(parameters)
+    if edges is None:
+        return 0.0, move
     margin = sole_margin(edges, sole, parameters.wiggle_margin)
     if margin < parameters.wiggle_margin:
         limits = (parameters.wiggle_move, parameters.wiggle_turn)
